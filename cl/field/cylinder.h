@@ -1,0 +1,25 @@
+// Cylinder, an infinite line: 1 over the distance to the line (Watanabe, Abe, Konno 2015, eq. 3). The distance of P is
+// |(P - M) x D|, a cross product instead of the printed difference of squares, which cancels near the line.
+#pragma once
+#include "../ray.h"
+#include "../sources.h"
+#include "quadratic.h"
+
+typedef struct {
+    Quadratic distance2;
+    floatv floor2;
+} cylinder_path;
+
+cylinder_path cylinder_along(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Cylinder *const cylinder = &sources->cylinders[index];
+    const float3v direction = uniform3(cylinder->direction);
+    const float3v from_point = subtract3(ray->origin, uniform3(cylinder->point));
+    cylinder_path path = {squared_length_along(cross3(from_point, direction), cross3(ray->span, direction)),
+                          ray->floor2};
+    path.distance2.least += ray->softening2;
+    return path;
+}
+
+floatv cylinder_field(const cylinder_path *const path, const floatv s) {
+    return rsqrt(max(quadratic_at(&path->distance2, s), path->floor2));
+}

@@ -1,0 +1,25 @@
+// Squared distance from the points of a ray to a fixed point, or to a line seen along it: a quadratic in s, kept as
+// (slope s + offset)^2 + least, in which nothing cancels near the least distance.
+#pragma once
+#include "../lanes.h"
+
+typedef struct {
+    floatv slope;
+    floatv offset;
+    floatv least;
+} Quadratic;
+
+// |start + s span|^2
+Quadratic squared_length_along(const float3v start, const float3v span) {
+    const floatv span2 = dot3(span, span);
+    const floatv slope = sqrt(span2);
+    const floatv nearest = select(-dot3(start, span) / span2, splat(0.0f), span2 == 0.0f);
+    const float3v closest = fma3(span, nearest, start);
+    const Quadratic q = {slope, -slope * nearest, dot3(closest, closest)};
+    return q;
+}
+
+floatv quadratic_at(const Quadratic *const q, const floatv s) {
+    const floatv x = fma(q->slope, s, q->offset);
+    return fma(x, x, q->least);
+}

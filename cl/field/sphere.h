@@ -1,0 +1,21 @@
+// Sphere: 1 / |P - M| (Watanabe, Abe, Konno 2015, eq. 2).
+#pragma once
+#include "../ray.h"
+#include "../sources.h"
+#include "quadratic.h"
+
+typedef struct {
+    Quadratic distance2;
+    floatv floor2;
+} sphere_path;
+
+sphere_path sphere_along(const Ray *const ray, const Sources *const sources, const uint index) {
+    const float3v center = uniform3(sources->spheres[index].center);
+    sphere_path path = {squared_length_along(subtract3(ray->origin, center), ray->span), ray->floor2};
+    path.distance2.least += ray->softening2;
+    return path;
+}
+
+floatv sphere_field(const sphere_path *const path, const floatv s) {
+    return rsqrt(max(quadratic_at(&path->distance2, s), path->floor2));
+}

@@ -1,0 +1,33 @@
+// Torus: 1 / sqrt((rho - R)^2 + z^2), rho the distance to the axis, z the height over the ring's plane (Watanabe, Abe,
+// Konno 2015, eq. 7). Along a ray rho^2 is a quadratic and z is linear.
+#pragma once
+#include "../ray.h"
+#include "../sources.h"
+#include "quadratic.h"
+
+typedef struct {
+    Quadratic rho2;
+    floatv height, height_slope;
+    float major_radius;
+    floatv softening2, floor2;
+} torus_path;
+
+torus_path torus_along(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Torus *const torus = &sources->tori[index];
+    const float3v axis = uniform3(torus->axis);
+    const float3v from_center = subtract3(ray->origin, uniform3(torus->center));
+    const torus_path path = {squared_length_along(cross3(from_center, axis), cross3(ray->span, axis)),
+                             dot3(from_center, axis),
+                             dot3(ray->span, axis),
+                             torus->major_radius,
+                             ray->softening2,
+                             ray->floor2};
+    return path;
+}
+
+floatv torus_field(const torus_path *const path, const floatv s) {
+    const floatv from_ring = sqrt(quadratic_at(&path->rho2, s)) - path->major_radius;
+    const floatv height = fma(path->height_slope, s, path->height);
+    const floatv distance2 = fma(from_ring, from_ring, fma(height, height, path->softening2));
+    return rsqrt(max(distance2, path->floor2));
+}

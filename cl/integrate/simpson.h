@@ -1,0 +1,21 @@
+// Composite Simpson rule (Watanabe, Abe, Konno 2015, eq. 23) over the field named by FIELD: the sum of weight times
+// field over the nodes, which the host tabulates with the decay in their weights. Included once for every field.
+
+// The sum is taken in blocks: rounding then grows with the block, not with up to 65537 nodes.
+#ifndef SIMPSON_BLOCK
+#define SIMPSON_BLOCK 256u
+#endif
+
+floatv JOIN(simpson_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
+                             __global const Node *const nodes, const uint node_count) {
+    const JOIN(FIELD, _path) path = JOIN(FIELD, _along)(ray, sources, index);
+    floatv integral = splat(0.0f);
+    for (uint begin = 0; begin < node_count; begin += SIMPSON_BLOCK) {
+        const uint end = min(begin + SIMPSON_BLOCK, node_count);
+        floatv block = splat(0.0f);
+        for (uint k = begin; k < end; ++k)
+            block = fma(splat(nodes[k].weight), JOIN(FIELD, _field)(&path, splat(nodes[k].s)), block);
+        integral += block;
+    }
+    return integral;
+}

@@ -1,0 +1,87 @@
+// The lane width: one source for scalar devices (LANES 1, GPUs) and vector devices (LANES 4, 8 or 16, CPUs). A lane is
+// one ray; floatv, intv and uintv hold one value for each lane, float3v a vector of space for each.
+#pragma once
+
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+
+#if LANES == 1
+typedef float floatv;
+typedef int intv;
+typedef uint uintv;
+#define LANE_NUMBERS 0u
+#define as_floatv as_float
+#define as_intv as_int
+#define to_floatv convert_float
+#define to_intv_down convert_int_rtz
+#define any_lane(condition) ((condition) != 0)
+#else
+typedef JOIN(float, LANES) floatv;
+typedef JOIN(int, LANES) intv;
+typedef JOIN(uint, LANES) uintv;
+#define as_floatv JOIN(as_float, LANES)
+#define as_intv JOIN(as_int, LANES)
+#define to_floatv JOIN(convert_float, LANES)
+#define to_intv_down JOIN(JOIN(convert_int, LANES), _rtz)
+#define any_lane(condition) any(condition)
+#if LANES == 4
+#define LANE_NUMBERS ((uintv)(0, 1, 2, 3))
+#elif LANES == 8
+#define LANE_NUMBERS ((uintv)(0, 1, 2, 3, 4, 5, 6, 7))
+#elif LANES == 16
+#define LANE_NUMBERS ((uintv)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#else
+#error "LANES must be 1, 4, 8 or 16"
+#endif
+#endif
+
+// The same value in every lane.
+#define splat(value) ((floatv)(value))
+
+typedef struct {
+    floatv x, y, z;
+} float3v;
+
+float3v uniform3(const float4 v) {
+    const float3v r = {splat(v.x), splat(v.y), splat(v.z)};
+    return r;
+}
+
+float3v subtract3(const float3v a, const float3v b) {
+    const float3v r = {a.x - b.x, a.y - b.y, a.z - b.z};
+    return r;
+}
+
+float3v scale3(const float3v a, const floatv k) {
+    const float3v r = {a.x * k, a.y * k, a.z * k};
+    return r;
+}
+
+// a k + b
+float3v fma3(const float3v a, const floatv k, const float3v b) {
+    const float3v r = {fma(a.x, k, b.x), fma(a.y, k, b.y), fma(a.z, k, b.z)};
+    return r;
+}
+
+floatv dot3(const float3v a, const float3v b) {
+    return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
+
+float3v cross3(const float3v a, const float3v b) {
+    const float3v r = {fma(a.y, b.z, -a.z * b.y), fma(a.z, b.x, -a.x * b.z), fma(a.x, b.y, -a.y * b.x)};
+    return r;
+}
+
+// One value a lane, from memory that the lanes do not share evenly.
+floatv gather(__global const float *const values, const intv index) {
+#if LANES == 1
+    return values[index];
+#else
+    int at[LANES];
+    float found[LANES];
+    JOIN(vstore, LANES)(index, 0, at);
+    for (uint lane = 0; lane < LANES; ++lane)
+        found[lane] = values[at[lane]];
+    return JOIN(vload, LANES)(0, found);
+#endif
+}

@@ -1,0 +1,42 @@
+// Radiance of a ray: the sum of emission times integral over the sources (Watanabe, Abe, Konno 2015, eq. 18, 20).
+#pragma once
+#include "field/curve.h"
+#include "field/cylinder.h"
+#include "field/sphere.h"
+#include "field/torus.h"
+
+#define FIELD sphere
+#include "integrate/simpson.h"
+#undef FIELD
+#define FIELD cylinder
+#include "integrate/simpson.h"
+#undef FIELD
+#define FIELD torus
+#include "integrate/simpson.h"
+#undef FIELD
+#define FIELD curve
+#include "integrate/simpson.h"
+#undef FIELD
+
+// Linear RGB of the sources that a launch names, a ray in every lane.
+float3v radiance_along(const Ray *const ray, const Sources *const sources, __global const Node *const nodes,
+                       const Launch *const launch) {
+    float3v radiance = uniform3((float4)(0.0f));
+    for (uint i = launch->sphere_begin; i < launch->sphere_end; ++i) {
+        const floatv integral = simpson_sphere(ray, sources, i, nodes, launch->node_count);
+        radiance = fma3(uniform3(sources->spheres[i].emission), integral, radiance);
+    }
+    for (uint i = launch->cylinder_begin; i < launch->cylinder_end; ++i) {
+        const floatv integral = simpson_cylinder(ray, sources, i, nodes, launch->node_count);
+        radiance = fma3(uniform3(sources->cylinders[i].emission), integral, radiance);
+    }
+    for (uint i = launch->torus_begin; i < launch->torus_end; ++i) {
+        const floatv integral = simpson_torus(ray, sources, i, nodes, launch->node_count);
+        radiance = fma3(uniform3(sources->tori[i].emission), integral, radiance);
+    }
+    for (uint i = launch->curve_begin; i < launch->curve_end; ++i) {
+        const floatv integral = simpson_curve(ray, sources, i, nodes, launch->node_count);
+        radiance = fma3(uniform3(sources->curves[i].emission), integral, radiance);
+    }
+    return radiance;
+}

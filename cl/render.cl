@@ -1,0 +1,17 @@
+// The image: each work-item renders LANES consecutive pixels.
+#include "radiance.h"
+#include "ray.h"
+#include "store.h"
+
+__kernel void render(const View view, const Launch launch, __global const Node *const restrict nodes,
+                     __global const Sphere *const restrict spheres, __global const Cylinder *const restrict cylinders,
+                     __global const Torus *const restrict tori, __global const Curve *const restrict curves,
+                     __global const SplinePiece *const restrict spline_pieces, __global float4 *const restrict image) {
+    const uint begin = get_global_id(0) * LANES;
+    if (begin >= launch.count)
+        return;
+    const Sources sources = {spheres, cylinders, tori, curves, spline_pieces};
+    const Ray ray = pixel_ray(&view, launch.first + begin + LANE_NUMBERS);
+    const float3v radiance = radiance_along(&ray, &sources, nodes, &launch);
+    store_pixels(image + launch.slot + begin, min(launch.count - begin, (uint)LANES), radiance, launch.accumulate);
+}

@@ -1,0 +1,96 @@
+// Every struct that crosses from the host to the device, and nothing else. src/pack/layout.rs mirrors this file in the
+// same order; the host passes each size as -D SIZEOF_X, checked below at every program build.
+//
+// Positions are seen from the eye (world axes, world units): float32 then resolves best where the rays are.
+#pragma once
+
+// The pixel grid on the projection plane, and the length of the rays that begin there.
+typedef struct {
+    float4 first_pixel; // from the eye to the centre of the pixel in column 0, row 0
+    float4 column_step; // from a pixel to its right neighbour
+    float4 row_step;    // from a pixel to the one below
+    float ray_length;   // |E - S|
+    float softening2;   // squared softening radius
+    uint width;         // pixels in a row
+    uint padding;
+} View;
+
+// One launch: which pixels (or rays), and which part of each list of sources.
+typedef struct {
+    uint first;      // index of the first pixel, row by row from the top left
+    uint count;      // pixels
+    uint slot;       // where in the output buffer the first pixel goes, in pixels
+    uint accumulate; // 0: overwrite the output; 1: add to it
+    uint node_count; // nodes of the quadrature
+    uint sphere_begin, sphere_end;
+    uint cylinder_begin, cylinder_end;
+    uint torus_begin, torus_end;
+    uint curve_begin, curve_end;
+    uint padding_0, padding_1, padding_2;
+} Launch;
+
+// A ray that is no pixel's: origin S, span E - S.
+typedef struct {
+    float4 origin;
+    float4 span;
+} RayRecord;
+
+// A quadrature node: parameter s, and its weight times the decay zeta(s).
+typedef struct {
+    float s;
+    float weight;
+} Node;
+
+// In all sources, emission is colour times coefficient, linear RGB (times |E - S| where light is measured by length).
+typedef struct {
+    float4 center;
+    float4 emission;
+} Sphere;
+
+typedef struct {
+    float4 point;     // the point of the line nearest to the eye
+    float4 direction; // unit
+    float4 emission;
+} Cylinder;
+
+typedef struct {
+    float4 center;
+    float4 axis; // unit
+    float4 emission;
+    float major_radius;
+    float padding_0, padding_1, padding_2;
+} Torus;
+
+// C(t) - C(1/2) = along * (velocity_along x) + across * (velocity_across x + bend x^2), with x = t - 1/2.
+typedef struct {
+    float4 middle; // C(1/2)
+    float4 along;  // unit, in the plane of the curve, perpendicular to C2
+    float4 across; // unit, in the plane of the curve, along C2
+    float4 normal; // unit, perpendicular to the plane
+    float4 emission;
+    float velocity_along;
+    float velocity_across;
+    float bend;        // |C2|
+    float vertex;      // x of the parabola's vertex, negated
+    uint is_straight;  // 1: so straight that the cubic for the nearest point degenerates
+    uint spline_begin; // first of its pieces in the list of spline pieces
+    uint spline_count; // pieces of its local-intensity series; 0: intensity 1
+    uint padding;
+} Curve;
+
+// One piece of a quadratic B-spline: S = c0 + c1 x + c2 x^2, x in [0,1] over the piece.
+typedef struct {
+    float c0, c1, c2;
+    float padding;
+} SplinePiece;
+
+#define CHECK_SIZE(type, size) typedef char type##_has_the_size_that_the_host_expects[sizeof(type) == (size) ? 1 : -1]
+CHECK_SIZE(View, SIZEOF_VIEW);
+CHECK_SIZE(Launch, SIZEOF_LAUNCH);
+CHECK_SIZE(RayRecord, SIZEOF_RAYRECORD);
+CHECK_SIZE(Node, SIZEOF_NODE);
+CHECK_SIZE(Sphere, SIZEOF_SPHERE);
+CHECK_SIZE(Cylinder, SIZEOF_CYLINDER);
+CHECK_SIZE(Torus, SIZEOF_TORUS);
+CHECK_SIZE(Curve, SIZEOF_CURVE);
+CHECK_SIZE(SplinePiece, SIZEOF_SPLINEPIECE);

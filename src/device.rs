@@ -1,0 +1,275 @@
+//! The choice of a device: OpenCL's devices and the built-in reference, by index, by type or by part of a name.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+use crate::error::{Error, Result};
+use crate::memory;
+use crate::opencl::{Discovery, OpenClDevice, discover};
+
+/// Kind of a device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DeviceType {
+    /// Graphics processor.
+    Gpu,
+    /// Processor, through OpenCL.
+    Cpu,
+    /// Any other OpenCL device.
+    Accelerator,
+    /// The built-in float64 reference, without OpenCL.
+    Reference,
+}
+
+impl fmt::Display for DeviceType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Gpu => "gpu",
+            Self::Cpu => "cpu",
+            Self::Accelerator => "accelerator",
+            Self::Reference => "reference",
+        })
+    }
+}
+
+/// A device that can render. Serialises to the record that `energywave devices --json` prints.
+#[derive(Debug, Clone, Serialize)]
+pub struct Device {
+    /// Position in [`Device::list`]; it may change when drivers are installed.
+    pub index: usize,
+    /// Name.
+    pub name: String,
+    /// Kind.
+    #[serde(rename = "type")]
+    pub device_type: DeviceType,
+    /// Name of its OpenCL platform.
+    pub platform: String,
+    /// OpenCL version.
+    pub version: String,
+    /// Driver version.
+    pub driver: String,
+    /// Compute units, or threads.
+    pub compute_units: u32,
+    /// Memory in bytes.
+    pub memory_bytes: u64,
+    /// Largest single allocation in bytes.
+    pub max_allocation_bytes: u64,
+    /// Rays that a work-item carries side by side.
+    pub lanes: u32,
+    /// Whether it is chosen where nothing else is said.
+    pub default: bool,
+    #[serde(skip)]
+    pub(crate) backend: Backend,
+}
+
+/// What a device computes with.
+#[derive(Debug, Clone)]
+pub(crate) enum Backend {
+    OpenCl(OpenClDevice),
+    Reference,
+}
+
+/// Every device, and why there is no OpenCL device if there is none.
+#[derive(Debug, Clone, Serialize)]
+#[serde(transparent)]
+pub struct Devices {
+    #[serde(serialize_with = "as_list")]
+    list: Vec<Device>,
+    #[serde(skip)]
+    problem: Option<String>,
+}
+
+fn as_list<S: Serializer>(list: &[Device], writer: S) -> std::result::Result<S::Ok, S::Error> {
+    list.serialize(writer)
+}
+
+impl Device {
+    /// Every device: GPUs, then other OpenCL devices, then the built-in reference.
+    pub fn list() -> Vec<Self> {
+        Devices::discover().list
+    }
+
+    /// The device that `choice` names: an index, `gpu`, `cpu`, `reference`, or a part of a device's name or platform,
+    /// upper or lower case.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchDevice`] if none fits or several do.
+    pub fn select(choice: &str) -> Result<Self> {
+        Devices::discover().select(choice)
+    }
+
+    /// The best GPU, else an OpenCL CPU, else the built-in reference.
+    pub fn best() -> Self {
+        Devices::discover().best()
+    }
+}
+
+impl Devices {
+    /// Looks for devices.
+    pub fn discover() -> Self {
+        let Discovery { devices, problem } = discover();
+        let mut list: Vec<Device> = devices
+            .into_iter()
+            .enumerate()
+            .map(|(index, device)| from_opencl(index, device))
+            .collect();
+        list.push(reference(list.len()));
+        let best = best_index(&list);
+        for device in &mut list {
+            device.default = device.index == best;
+        }
+        Self { list, problem }
+    }
+
+    /// All of them, in the order of their indices; the last is the built-in reference.
+    pub fn as_slice(&self) -> &[Device] {
+        &self.list
+    }
+
+    /// Why no OpenCL device was found, and what to install; `None` if one was.
+    pub fn problem(&self) -> Option<&str> {
+        self.problem.as_deref()
+    }
+
+    /// See [`Device::best`].
+    pub fn best(&self) -> Device {
+        self.list[best_index(&self.list)].clone()
+    }
+
+    /// See [`Device::select`].
+    ///
+    /// # Errors
+    /// [`Error::NoSuchDevice`] if none fits or several do.
+    pub fn select(&self, choice: &str) -> Result<Device> {
+        let word = choice.trim().to_lowercase();
+        let fitting: Vec<&Device> = match word.as_str() {
+            "reference" => self.of_type(DeviceType::Reference),
+            "gpu" => self.of_type(DeviceType::Gpu).into_iter().take(1).collect(),
+            "cpu" => self.of_type(DeviceType::Cpu).into_iter().take(1).collect(),
+            "" => Vec::new(),
+            word => match word.parse::<usize>() {
+                Ok(index) => self.list.get(index).into_iter().collect(),
+                Err(_) => self.by_name(word),
+            },
+        };
+        match fitting.as_slice() {
+            [device] => Ok((*device).clone()),
+            [] => {
+                let problem = match &self.problem {
+                    Some(problem) => format!(" ({problem})"),
+                    None => String::new(),
+                };
+                Err(Error::NoSuchDevice(format!(
+                    "no device \"{choice}\"{problem}; there are:{}",
+                    listed(self.list.iter())
+                )))
+            }
+            several => Err(Error::NoSuchDevice(format!(
+                "\"{choice}\" fits {} devices, choose one by its index or a longer part of its name:{}",
+                several.len(),
+                listed(several.iter().copied())
+            ))),
+        }
+    }
+
+    /// Devices of a type, the best first; a simulator only where there is no real one.
+    fn of_type(&self, device_type: DeviceType) -> Vec<&Device> {
+        let mut fitting: Vec<&Device> = self
+            .list
+            .iter()
+            .filter(|device| device.device_type == device_type)
+            .collect();
+        fitting.sort_by_key(|device| {
+            (
+                device.is_simulator(),
+                std::cmp::Reverse(device.compute_units),
+            )
+        });
+        fitting
+    }
+
+    /// Devices whose name has `word` in it; if there are none, those whose platform or version has.
+    fn by_name(&self, word: &str) -> Vec<&Device> {
+        let fitting = |text: fn(&Device) -> String| -> Vec<&Device> {
+            let has_word = |device: &&Device| text(device).to_lowercase().contains(word);
+            self.list.iter().filter(has_word).collect()
+        };
+        let by_name = fitting(|device| device.name.clone());
+        if by_name.is_empty() {
+            fitting(|device| format!("{} {}", device.platform, device.version))
+        } else {
+            by_name
+        }
+    }
+}
+
+impl Device {
+    fn is_simulator(&self) -> bool {
+        matches!(&self.backend, Backend::OpenCl(device) if device.is_simulator)
+    }
+}
+
+/// Place of the best GPU, else of the best CPU, else of any other device, else of the reference.
+fn best_index(list: &[Device]) -> usize {
+    let rank = |device: &Device| match device.device_type {
+        _ if device.is_simulator() => 4,
+        DeviceType::Gpu => 0,
+        DeviceType::Cpu => 1,
+        DeviceType::Accelerator => 2,
+        DeviceType::Reference => 3,
+    };
+    list.iter()
+        .min_by_key(|device| (rank(device), std::cmp::Reverse(device.compute_units)))
+        .map_or(0, |device| device.index)
+}
+
+fn listed<'a>(devices: impl Iterator<Item = &'a Device>) -> String {
+    devices.map(|device| format!("\n    {device}")).collect()
+}
+
+impl fmt::Display for Device {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (index, name) = (self.index, &self.name);
+        write!(
+            f,
+            "{index}: {name} ({}, {})",
+            self.device_type, self.platform
+        )
+    }
+}
+
+fn from_opencl(index: usize, device: OpenClDevice) -> Device {
+    Device {
+        index,
+        name: device.name.clone(),
+        device_type: device.device_type,
+        platform: device.platform.clone(),
+        version: device.version.clone(),
+        driver: device.driver.clone(),
+        compute_units: device.compute_units,
+        memory_bytes: device.memory_bytes,
+        max_allocation_bytes: device.max_allocation_bytes,
+        lanes: device.lanes,
+        default: false,
+        backend: Backend::OpenCl(device),
+    }
+}
+
+fn reference(index: usize) -> Device {
+    let memory = memory::total_bytes().unwrap_or(0);
+    Device {
+        index,
+        name: "reference".to_owned(),
+        device_type: DeviceType::Reference,
+        platform: "built in, float64".to_owned(),
+        version: "none".to_owned(),
+        driver: env!("CARGO_PKG_VERSION").to_owned(),
+        compute_units: rayon::current_num_threads() as u32,
+        memory_bytes: memory,
+        max_allocation_bytes: memory,
+        lanes: 1,
+        default: false,
+        backend: Backend::Reference,
+    }
+}

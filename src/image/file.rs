@@ -1,0 +1,214 @@
+//! Image files: EXR (float32, linear) and PNG (8-bit sRGB), written beside the target and renamed, so that no half-written
+//! file is ever left.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use image::codecs::openexr::OpenExrEncoder;
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder, ImageError};
+use tempfile::NamedTempFile;
+
+use super::{DisplayImage, RadianceImage};
+use crate::error::{Error, Result};
+use crate::scene::Display;
+
+/// A file format, chosen by the ending of a file's name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OutputFormat {
+    /// 32-bit float, linear, before exposure and tone mapping.
+    Exr,
+    /// 8-bit sRGB, after both, dithered.
+    Png,
+}
+
+impl OutputFormat {
+    /// The format that a file's ending names.
+    ///
+    /// # Errors
+    /// [`Error::OutputFormat`] for any other ending.
+    pub fn of(path: &Path) -> Result<Self> {
+        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+        match ending.to_str() {
+            Some("exr") => Ok(Self::Exr),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Error::OutputFormat(path.to_owned())),
+        }
+    }
+}
+
+/// An output that is known to be writable before anything is computed.
+#[derive(Debug)]
+pub struct Output {
+    path: PathBuf,
+    format: OutputFormat,
+    file: NamedTempFile,
+}
+
+impl Output {
+    /// Opens a temporary file beside `path`, through a symbolic link beside what it points to. It vanishes unless
+    /// [`Output::write`] succeeds.
+    ///
+    /// # Errors
+    /// [`Error::OutputFormat`] for an unknown ending, [`Error::Output`] if the folder is missing or not writable.
+    pub fn create(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let format = OutputFormat::of(path)?;
+        let fail = |reason: String| Error::Output {
+            path: path.to_owned(),
+            reason,
+        };
+        if path.is_dir() {
+            return Err(fail("it is a folder".to_owned()));
+        }
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        if !folder.is_dir() {
+            return Err(fail(format!(
+                "there is no folder {}; create it first",
+                folder.display()
+            )));
+        }
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".energywave-").suffix(".tmp");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o666)); // less the user's umask
+        }
+        let file = builder
+            .tempfile_in(folder)
+            .map_err(|error| fail(format!("folder {}: {}", folder.display(), error.kind())))?;
+        Ok(Self {
+            path: target,
+            format,
+            file,
+        })
+    }
+
+    /// Encodes the image, tone-mapped if the format is for screens, and moves the file to its place.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if the disk is full or the file cannot be moved; nothing is left behind then.
+    pub fn write(self, image: &RadianceImage, display: &Display) -> Result<()> {
+        match self.format {
+            OutputFormat::Exr => self.finish(|writer| encode_exr(image, writer)),
+            OutputFormat::Png => {
+                let picture = image.tone_map(display);
+                self.finish(|writer| encode_png(&picture, writer))
+            }
+        }
+    }
+
+    fn finish(
+        mut self,
+        encode: impl FnOnce(&mut BufWriter<&mut File>) -> std::result::Result<(), ImageError>,
+    ) -> Result<()> {
+        let path = self.path;
+        let fail = |reason: String| Error::Output {
+            path: path.clone(),
+            reason: format!("{reason}; nothing was written"),
+        };
+        let mut writer = BufWriter::new(self.file.as_file_mut());
+        encode(&mut writer).map_err(|error| fail(reason(&error)))?;
+        writer.flush().map_err(|error| fail(error.to_string()))?;
+        drop(writer);
+        self.file
+            .persist(&path)
+            .map_err(|error| fail(error.error.to_string()))?;
+        Ok(())
+    }
+}
+
+/// An encoder wraps the system's error into words about images; the system's own are what the user can act on.
+fn reason(error: &ImageError) -> String {
+    let mut source: &(dyn std::error::Error + 'static) = error;
+    loop {
+        if let Some(io) = source.downcast_ref::<io::Error>() {
+            return io.to_string();
+        }
+        match source.source() {
+            Some(inner) => source = inner,
+            None => return source.to_string(),
+        }
+    }
+}
+
+fn encode_exr(
+    image: &RadianceImage,
+    writer: &mut BufWriter<&mut File>,
+) -> std::result::Result<(), ImageError> {
+    let size = image.size();
+    let bytes = bytemuck::cast_slice(image.as_slice());
+    OpenExrEncoder::new(writer).write_image(
+        bytes,
+        size.width,
+        size.height,
+        ExtendedColorType::Rgba32F,
+    )
+}
+
+fn encode_png(
+    picture: &DisplayImage,
+    writer: &mut BufWriter<&mut File>,
+) -> std::result::Result<(), ImageError> {
+    let size = picture.size();
+    PngEncoder::new(writer).write_image(
+        picture.as_slice(),
+        size.width,
+        size.height,
+        ExtendedColorType::Rgb8,
+    )
+}
+
+impl RadianceImage {
+    /// Writes an `.exr` (linear) or a `.png` (tone-mapped for `display`); the ending chooses.
+    ///
+    /// # Errors
+    /// [`Error::OutputFormat`] for another ending, [`Error::Output`] if the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>, display: &Display) -> Result<()> {
+        Output::create(path)?.write(self, display)
+    }
+
+    /// Reads the colour of a linear `.exr`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if the file cannot be read or is no EXR image.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let fail = |error: ImageError| Error::Input {
+            path: path.to_owned(),
+            reason: reason(&error),
+        };
+        let reader =
+            image::ImageReader::open(path).map_err(|error| fail(ImageError::IoError(error)))?;
+        let pixels = reader.decode().map_err(fail)?.into_rgba32f();
+        let size = crate::scene::ImageSize {
+            width: pixels.width(),
+            height: pixels.height(),
+        };
+        Ok(Self {
+            size,
+            data: pixels.into_raw(),
+        })
+    }
+}
+
+impl DisplayImage {
+    /// Writes a `.png`.
+    ///
+    /// # Errors
+    /// [`Error::OutputFormat`] for another ending, [`Error::Output`] if the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        let output = Output::create(path)?;
+        if output.format != OutputFormat::Png {
+            return Err(Error::OutputFormat(path.to_owned()));
+        }
+        output.finish(|writer| encode_png(self, writer))
+    }
+}

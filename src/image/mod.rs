@@ -1,0 +1,91 @@
+//! Images: linear radiance, the 8-bit picture made of it, files, and comparison.
+
+mod compare;
+mod file;
+mod tone_map;
+
+pub use compare::{Difference, compare};
+pub use file::{Output, OutputFormat};
+
+use crate::error::{Error, Result};
+use crate::memory;
+use crate::scene::ImageSize;
+
+/// Linear radiance: RGBA in float32, alpha 1, by rows from the top left.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RadianceImage {
+    size: ImageSize,
+    data: Vec<f32>,
+}
+
+impl RadianceImage {
+    /// A black, transparent image.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`] if the host has too little memory for it.
+    pub fn new(size: ImageSize) -> Result<Self> {
+        let values = 4 * size.pixels();
+        let bytes = values * size_of::<f32>();
+        let too_large = |available: String| {
+            Error::OutOfMemory(format!(
+                "image of {}x{} pixels: {} MiB needed{available}; make the image smaller",
+                size.width,
+                size.height,
+                bytes >> 20
+            ))
+        };
+        if let Some(available) = memory::available_bytes()
+            && bytes as u64 > available
+        {
+            return Err(too_large(format!(", {} MiB available", available >> 20)));
+        }
+        let mut data = Vec::new();
+        data.try_reserve_exact(values)
+            .map_err(|_| too_large(", more than the system grants".to_owned()))?;
+        data.resize(values, 0.0);
+        Ok(Self { size, data })
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> ImageSize {
+        self.size
+    }
+
+    /// RGBA values, 4 for every pixel, by rows from the top left.
+    pub fn as_slice(&self) -> &[f32] {
+        &self.data
+    }
+
+    /// The same values, to be changed.
+    pub fn as_mut_slice(&mut self) -> &mut [f32] {
+        &mut self.data
+    }
+
+    /// Linear RGBA of a pixel; `None` outside the image.
+    pub fn pixel(&self, column: u32, row: u32) -> Option<[f32; 4]> {
+        if column >= self.size.width || row >= self.size.height {
+            return None;
+        }
+        let begin = 4 * (row as usize * self.size.width as usize + column as usize);
+        self.data.get(begin..begin + 4)?.try_into().ok()
+    }
+}
+
+/// An 8-bit picture: sRGB-encoded RGB by rows from the top left.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DisplayImage {
+    size: ImageSize,
+    data: Vec<u8>,
+}
+
+impl DisplayImage {
+    /// Width and height in pixels.
+    pub fn size(&self) -> ImageSize {
+        self.size
+    }
+
+    /// RGB bytes, 3 for every pixel.
+    pub fn as_slice(&self) -> &[u8] {
+        &self.data
+    }
+}

@@ -1,0 +1,115 @@
+//! Linear radiance to 8-bit sRGB: exposure, tone mapping, sRGB encoding, dither.
+
+use rayon::prelude::*;
+
+use super::{DisplayImage, RadianceImage};
+use crate::scene::{Display, ToneMap};
+
+impl RadianceImage {
+    /// The picture for a screen. Dithered, so that wide glows do not band; black stays black and white white.
+    pub fn tone_map(&self, display: &Display) -> DisplayImage {
+        let gain = display.exposure.exp2() as f32;
+        let width = self.size.width as usize;
+        let mut data = vec![0_u8; 3 * self.size.pixels()];
+        data.par_chunks_exact_mut(3)
+            .zip(self.data.par_chunks_exact(4))
+            .enumerate()
+            .for_each(|(i, (bytes, radiance))| {
+                let threshold = gradient_noise(i % width, i / width);
+                for (byte, light) in bytes.iter_mut().zip(radiance) {
+                    let shown = srgb_encode(display.tone_map.apply(light * gain));
+                    *byte = (shown * 255.0 + threshold) as u8;
+                }
+            });
+        DisplayImage {
+            size: self.size,
+            data,
+        }
+    }
+}
+
+impl ToneMap {
+    /// Exposed radiance of one channel to [0,1]; negative radiance is black.
+    pub fn apply(self, radiance: f32) -> f32 {
+        let l = radiance.max(0.0);
+        let shown = match self {
+            Self::Clamp => l,
+            Self::Exponential => -(-l).exp_m1(),
+            Self::Reinhard if l.is_infinite() => 1.0,
+            Self::Reinhard => l / (1.0 + l),
+            Self::Aces => {
+                let l = l.min(1e4);
+                l * (2.51 * l + 0.03) / (l * (2.43 * l + 0.59) + 0.14)
+            }
+        };
+        shown.min(1.0)
+    }
+}
+
+/// The sRGB transfer function (IEC 61966-2-1), linear [0,1] to encoded [0,1].
+fn srgb_encode(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// Interleaved gradient noise in [0,1) (Jimenez 2014): a dither threshold whose error the eye averages away.
+fn gradient_noise(column: usize, row: usize) -> f32 {
+    let phase = 0.067_110_56 * column as f64 + 0.005_837_15 * row as f64;
+    ((52.982_918_9 * phase.fract()).fract() as f32).min(0.999)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::ImageSize;
+
+    fn flat(radiance: f32) -> DisplayImage {
+        let size = ImageSize {
+            width: 64,
+            height: 64,
+        };
+        let mut image = RadianceImage::new(size).unwrap();
+        image.as_mut_slice().fill(radiance);
+        image.tone_map(&Display {
+            exposure: 0.0,
+            tone_map: ToneMap::Clamp,
+        })
+    }
+
+    #[test]
+    fn black_and_white_are_not_dithered_and_greys_keep_their_mean() {
+        assert!(flat(0.0).as_slice().iter().all(|byte| *byte == 0));
+        assert!(flat(1.0).as_slice().iter().all(|byte| *byte == 255));
+        let encoded = 255.0 * srgb_encode(0.2);
+        let picture = flat(0.2);
+        let sum: f32 = picture.as_slice().iter().map(|byte| f32::from(*byte)).sum();
+        let mean = sum / picture.as_slice().len() as f32;
+        assert!((mean - encoded).abs() < 0.02, "{mean} {encoded}");
+    }
+
+    #[test]
+    fn every_curve_rises_from_black_to_at_most_white() {
+        let curves = [
+            ToneMap::Clamp,
+            ToneMap::Exponential,
+            ToneMap::Reinhard,
+            ToneMap::Aces,
+        ];
+        for curve in curves {
+            assert_eq!(curve.apply(0.0), 0.0);
+            assert_eq!(curve.apply(-1.0), 0.0);
+            let mut before = 0.0;
+            for i in 0..400 {
+                let shown = curve.apply(1.05_f32.powi(i) * 1e-3);
+                assert!(shown >= before && shown <= 1.0, "{curve:?} {i}: {shown}");
+                before = shown;
+            }
+            assert!(curve.apply(f32::INFINITY) <= 1.0);
+        }
+        assert!((ToneMap::Exponential.apply(1.0) - 0.632_120_6).abs() < 1e-6);
+        assert!((ToneMap::Reinhard.apply(3.0) - 0.75).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,159 @@
+//! Typed, named device buffers that know their length.
+
+use std::ffi::c_void;
+use std::ptr;
+
+use bytemuck::Pod;
+use opencl3::memory::{Buffer, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE, ClMem};
+use opencl3::types::{CL_TRUE, cl_mem};
+
+use super::Compute;
+use super::failure::failed;
+use crate::error::{Error, Result};
+
+/// A buffer of `T` in device memory.
+#[derive(Debug)]
+pub struct DeviceBuffer<T> {
+    buffer: Buffer<T>,
+    len: usize,
+}
+
+impl<T: Pod> DeviceBuffer<T> {
+    /// Allocates `len` elements (at least one), which kernels may read and write; `what` names the contents in errors.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`] beyond the device's limits, [`Error::Device`] if the driver refuses.
+    pub fn new(compute: &Compute, what: &str, len: usize) -> Result<Self> {
+        Self::with_flags(compute, what, len, CL_MEM_READ_WRITE)
+    }
+
+    fn with_flags(compute: &Compute, what: &str, len: usize, flags: u64) -> Result<Self> {
+        let device = &compute.device;
+        let len = len.max(1);
+        let bytes = (len * size_of::<T>()) as u64;
+        // A driver may grant more than there is and fail later: its own limits are what can be relied on.
+        if bytes > device.max_allocation_bytes || bytes > device.memory_bytes {
+            return Err(Error::OutOfMemory(format!(
+                "{}: {what} needs {} MiB in one buffer; the device allows {} MiB",
+                device.name,
+                bytes.div_ceil(1 << 20),
+                device.max_allocation_bytes.min(device.memory_bytes) >> 20
+            )));
+        }
+        // SAFETY: no host pointer is handed over; the context is alive.
+        let buffer =
+            unsafe { Buffer::create(&compute.context, flags, len, ptr::null_mut::<c_void>()) }
+                .map_err(failed(&device.name, "clCreateBuffer"))?;
+        Ok(Self { buffer, len })
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Never: a buffer has at least one element.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Copies `data` to the first elements and waits for it.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the copy fails or the data is longer than the buffer.
+    pub fn write(&mut self, compute: &Compute, data: &[T]) -> Result<()> {
+        self.check_len(compute, "clEnqueueWriteBuffer", data.len())?;
+        if data.is_empty() {
+            return Ok(());
+        }
+        // SAFETY: the data fits into the buffer, and the blocking call ends before the borrow does.
+        unsafe {
+            compute
+                .queue
+                .enqueue_write_buffer(&mut self.buffer, CL_TRUE, 0, data, &[])
+        }
+        .map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))?;
+        Ok(())
+    }
+
+    /// Copies the first elements to `target` after all earlier commands of the queue, and waits for it.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the copy fails or the target is longer than the buffer.
+    pub fn read(&self, compute: &Compute, target: &mut [T]) -> Result<()> {
+        self.check_len(compute, "clEnqueueReadBuffer", target.len())?;
+        if target.is_empty() {
+            return Ok(());
+        }
+        // SAFETY: the target is no longer than the buffer, and the blocking call ends before the borrow does.
+        unsafe {
+            compute
+                .queue
+                .enqueue_read_buffer(&self.buffer, CL_TRUE, 0, target, &[])
+        }
+        .map_err(failed(&compute.device.name, "clEnqueueReadBuffer"))?;
+        Ok(())
+    }
+
+    pub(super) fn handle(&self) -> cl_mem {
+        self.buffer.get()
+    }
+
+    fn check_len(&self, compute: &Compute, call: &'static str, len: usize) -> Result<()> {
+        if len <= self.len {
+            return Ok(());
+        }
+        Err(Error::Device {
+            device: compute.device.name.clone(),
+            call,
+            code: format!("{len} elements, the buffer has {}", self.len),
+            advice: "a fault of this program: please report it",
+        })
+    }
+}
+
+/// A read-only list on the device that is uploaded only when it changed, and grows when it must.
+#[derive(Debug)]
+pub struct Uploaded<T> {
+    what: &'static str,
+    buffer: Option<DeviceBuffer<T>>,
+    contents: Vec<T>,
+}
+
+impl<T: Pod + PartialEq> Uploaded<T> {
+    /// An empty list; `what` names the contents in errors.
+    pub fn new(what: &'static str) -> Self {
+        Self {
+            what,
+            buffer: None,
+            contents: Vec::new(),
+        }
+    }
+
+    /// Makes the device's list equal to `data`.
+    ///
+    /// # Errors
+    /// As [`DeviceBuffer::new`] and [`DeviceBuffer::write`].
+    pub fn upload(&mut self, compute: &Compute, data: &[T]) -> Result<()> {
+        let fits = |buffer: &DeviceBuffer<T>| buffer.len() >= data.len();
+        if self.contents == data && self.buffer.is_some() {
+            return Ok(());
+        }
+        let mut buffer = match self.buffer.take() {
+            Some(buffer) if fits(&buffer) => buffer,
+            _ => DeviceBuffer::with_flags(compute, self.what, data.len(), CL_MEM_READ_ONLY)?,
+        };
+        buffer.write(compute, data)?;
+        self.buffer = Some(buffer);
+        self.contents.clear();
+        self.contents.extend_from_slice(data);
+        Ok(())
+    }
+
+    /// The buffer's handle; null before the first upload.
+    pub(super) fn handle(&self) -> cl_mem {
+        self.buffer
+            .as_ref()
+            .map_or(ptr::null_mut(), DeviceBuffer::handle)
+    }
+}

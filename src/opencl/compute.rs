@@ -1,0 +1,45 @@
+//! A device with its context and its queue.
+
+use opencl3::command_queue::{CL_QUEUE_PROFILING_ENABLE, CommandQueue};
+use opencl3::context::Context;
+
+use super::OpenClDevice;
+use super::failure::failed;
+use crate::error::Result;
+
+/// A device ready for work. Its queue runs commands in order.
+#[derive(Debug)]
+pub struct Compute {
+    // Dropped in this order: a queue before its context.
+    pub(super) queue: CommandQueue,
+    pub(super) context: Context,
+    pub(super) device: OpenClDevice,
+}
+
+impl Compute {
+    /// Creates context and queue.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`] if the driver refuses.
+    pub fn new(device: &OpenClDevice) -> Result<Self> {
+        let name = &device.name;
+        let context =
+            Context::from_device(&device.handle).map_err(failed(name, "clCreateContext"))?;
+        // SAFETY: the device belongs to the context, which outlives the queue.
+        let queue = unsafe {
+            #[allow(deprecated)] // the form of OpenCL 1.2, which every driver has
+            CommandQueue::create(&context, device.handle.id(), CL_QUEUE_PROFILING_ENABLE)
+        }
+        .map_err(failed(name, "clCreateCommandQueue"))?;
+        Ok(Self {
+            queue,
+            context,
+            device: device.clone(),
+        })
+    }
+
+    /// The device's properties.
+    pub fn device(&self) -> &OpenClDevice {
+        &self.device
+    }
+}

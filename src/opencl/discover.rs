@@ -1,0 +1,144 @@
+//! Which OpenCL devices there are, and what is missing where there are none.
+
+use opencl3::device::{
+    CL_DEVICE_TYPE_ALL, CL_DEVICE_TYPE_CPU, CL_DEVICE_TYPE_GPU, Device as ClDevice,
+};
+use opencl3::error_codes::{ClError, DLOPEN_FUNCTION_NOT_AVAILABLE, DLOPEN_RUNTIME_LOAD_FAILED};
+use opencl3::platform::{Platform, get_platforms};
+use opencl3::types::cl_device_id;
+
+use crate::device::DeviceType;
+
+const CL_PLATFORM_NOT_FOUND_KHR: i32 = -1001;
+
+/// Result of a search for OpenCL devices.
+#[derive(Debug, Default)]
+pub struct Discovery {
+    /// Every usable device, GPUs first, else in the order of platform and name.
+    pub devices: Vec<OpenClDevice>,
+    /// Why there is none, and what to install.
+    pub problem: Option<String>,
+}
+
+/// An OpenCL device and its properties.
+#[derive(Debug, Clone)]
+pub struct OpenClDevice {
+    pub(super) handle: ClDevice,
+    /// Its name.
+    pub name: String,
+    /// GPU, CPU or other.
+    pub device_type: DeviceType,
+    /// Name of its platform.
+    pub platform: String,
+    /// OpenCL version.
+    pub version: String,
+    /// Driver version.
+    pub driver: String,
+    /// Compute units.
+    pub compute_units: u32,
+    /// Global memory, bytes.
+    pub memory_bytes: u64,
+    /// Largest single buffer, bytes.
+    pub max_allocation_bytes: u64,
+    /// Lanes of the kernels by default: 1 on GPUs, the float vector width on CPUs.
+    pub lanes: u32,
+    /// Whether it is a simulator, which is never chosen by default.
+    pub is_simulator: bool,
+}
+
+/// Asks the OpenCL loader for every device of every platform.
+pub fn discover() -> Discovery {
+    let platforms = match get_platforms() {
+        Ok(platforms) => platforms,
+        Err(ClError(code)) => {
+            return Discovery {
+                devices: Vec::new(),
+                problem: Some(missing(code)),
+            };
+        }
+    };
+    let mut devices: Vec<OpenClDevice> = platforms
+        .iter()
+        .flat_map(|platform| {
+            let ids = platform.get_devices(CL_DEVICE_TYPE_ALL).unwrap_or_default();
+            ids.into_iter().filter_map(|id| inspect(platform, id))
+        })
+        .collect();
+    devices.sort_by(|a, b| {
+        let key = |d: &OpenClDevice| (d.is_simulator, d.device_type != DeviceType::Gpu);
+        let names = |d: &OpenClDevice| (d.platform.clone(), d.name.clone());
+        (key(a), names(a)).cmp(&(key(b), names(b)))
+    });
+    let problem = devices
+        .is_empty()
+        .then(|| missing(CL_PLATFORM_NOT_FOUND_KHR));
+    Discovery { devices, problem }
+}
+
+/// A device with a compiler and all properties readable; others cannot render.
+fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
+    let handle = ClDevice::new(id);
+    if !handle.available().ok()? || !handle.compiler_available().ok()? {
+        return None;
+    }
+    let platform = platform.name().ok()?;
+    let bits = handle.dev_type().ok()?;
+    let device_type = match bits {
+        bits if bits & CL_DEVICE_TYPE_GPU != 0 => DeviceType::Gpu,
+        bits if bits & CL_DEVICE_TYPE_CPU != 0 => DeviceType::Cpu,
+        _ => DeviceType::Accelerator,
+    };
+    let is_simulator = platform.to_ascii_lowercase().contains("oclgrind");
+    let lanes = match device_type {
+        DeviceType::Cpu if !is_simulator => handle.native_vector_width_float().ok()?,
+        _ => 1,
+    };
+    Some(OpenClDevice {
+        name: handle.name().ok()?.trim().to_owned(),
+        device_type,
+        version: handle.version().ok()?.trim().to_owned(),
+        driver: handle.driver_version().ok()?.trim().to_owned(),
+        compute_units: handle.max_compute_units().ok()?,
+        memory_bytes: handle.global_mem_size().ok()?,
+        max_allocation_bytes: handle.max_mem_alloc_size().ok()?,
+        lanes: supported_lanes(lanes),
+        is_simulator,
+        platform,
+        handle,
+    })
+}
+
+/// The greatest lane width of the kernels that is no wider than the device's vectors.
+fn supported_lanes(width: u32) -> u32 {
+    match width {
+        16.. => 16,
+        8.. => 8,
+        4.. => 4,
+        _ => 1,
+    }
+}
+
+/// What to install when the loader answers with `code` instead of platforms.
+fn missing(code: i32) -> String {
+    match code {
+        DLOPEN_RUNTIME_LOAD_FAILED => {
+            "no OpenCL loader (libOpenCL) on this machine; install ocl-icd-libopencl1 (Debian, Ubuntu) and a device's \
+             driver, or pocl-opencl-icd for the CPU"
+                .to_owned()
+        }
+        DLOPEN_FUNCTION_NOT_AVAILABLE => {
+            "the OpenCL loader lacks a function of OpenCL 1.2: libOpenCL is too old or no OpenCL library; reinstall \
+             ocl-icd-libopencl1 (Debian, Ubuntu)"
+                .to_owned()
+        }
+        CL_PLATFORM_NOT_FOUND_KHR => {
+            "the OpenCL loader finds no driver (no ICD); install pocl-opencl-icd (Debian, Ubuntu) for the CPU or your \
+             GPU vendor's OpenCL driver, and check OCL_ICD_VENDORS if it is set"
+                .to_owned()
+        }
+        code => format!(
+            "the OpenCL loader failed ({}); check the installed OpenCL drivers",
+            super::failure::code_name(code)
+        ),
+    }
+}

@@ -1,0 +1,42 @@
+//! OpenCL's error codes as errors with advice.
+
+use opencl3::error_codes::{self as codes, ClError, error_text};
+
+use crate::error::Error;
+
+/// Turns the error code of a failed call into an error that names device, call and what to do.
+pub(super) fn failed<'a>(
+    device: &'a str,
+    call: &'static str,
+) -> impl FnOnce(ClError) -> Error + 'a {
+    move |ClError(code)| Error::Device {
+        device: device.to_owned(),
+        call,
+        code: code_name(code),
+        advice: advice(code),
+    }
+}
+
+/// OpenCL's name of an error code, with the number.
+pub(super) fn code_name(code: i32) -> String {
+    format!("{}, {code}", error_text(code))
+}
+
+fn advice(code: i32) -> &'static str {
+    match code {
+        codes::CL_MEM_OBJECT_ALLOCATION_FAILURE
+        | codes::CL_OUT_OF_RESOURCES
+        | codes::CL_OUT_OF_HOST_MEMORY
+        | codes::CL_INVALID_BUFFER_SIZE => {
+            "the device ran out of memory or was lost: make the image or the scene smaller, or choose another device"
+        }
+        codes::CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST | codes::CL_INVALID_COMMAND_QUEUE => {
+            "the device was lost during the work: try again, update its driver, or choose another device"
+        }
+        codes::CL_INVALID_PROGRAM | codes::CL_INVALID_PROGRAM_EXECUTABLE => {
+            "the driver built no usable program: is its cache folder writable (PoCL: POCL_CACHE_DIR)?"
+        }
+        codes::CL_DEVICE_NOT_AVAILABLE => "the device is in use or switched off",
+        _ => "update the device's driver, or choose another device with --device",
+    }
+}

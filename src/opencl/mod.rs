@@ -1,0 +1,18 @@
+//! The OpenCL side: finding devices, building the kernels, buffers, launches. The one home of `unsafe`.
+#![allow(unsafe_code)] // calls into OpenCL are unsafe by nature; each block says why it is sound
+
+mod buffer;
+mod compute;
+mod discover;
+mod failure;
+mod launch;
+mod program;
+mod renderer;
+mod source;
+
+pub use buffer::{DeviceBuffer, Uploaded};
+pub use compute::Compute;
+pub use discover::{Discovery, OpenClDevice, discover};
+pub use program::{BuildOptions, Program};
+pub use renderer::OpenClRenderer;
+pub use source::{FILES, resolve};

@@ -1,0 +1,190 @@
+//! Builds the kernels for a device, with readable logs, and runs them.
+
+use std::ffi::CString;
+
+use opencl3::error_codes::ClError;
+use opencl3::event::Event;
+use opencl3::kernel::Kernel;
+use opencl3::program::Program as ClProgram;
+
+use super::failure::{code_name, failed};
+use super::{Compute, DeviceBuffer, source};
+use crate::error::{Error, Result};
+use crate::pack::layout;
+use crate::reference::CORE_FLOOR;
+
+/// Environment variable with further options for the kernels' compiler, such as `-D NAME` or `-cl-opt-disable`.
+const OPTIONS_VARIABLE: &str = "ENERGYWAVE_BUILD_OPTIONS";
+
+/// How the kernels are built.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct BuildOptions {
+    /// Lanes: 1, 4, 8 or 16; `None`: what suits the device.
+    pub lanes: Option<u32>,
+    /// Further options for the OpenCL compiler.
+    pub extra: String,
+}
+
+/// A built program.
+#[derive(Debug)]
+pub struct Program {
+    program: ClProgram,
+    device: String,
+    /// Lanes it was built for.
+    pub lanes: u32,
+}
+
+impl Program {
+    /// Builds files of `cl/`.
+    ///
+    /// # Errors
+    /// [`Error::Build`] with the compiler's log, places as `cl/FILE:LINE`.
+    pub fn build(compute: &Compute, files: &[&str], options: &BuildOptions) -> Result<Self> {
+        Self::build_resolved(compute, &source::resolve(files), options)
+    }
+
+    /// Builds a text that may include files of `cl/`; `name` stands for it in the compiler's log.
+    ///
+    /// # Errors
+    /// As [`Program::build`].
+    pub fn build_text(
+        compute: &Compute,
+        name: &str,
+        text: &str,
+        options: &BuildOptions,
+    ) -> Result<Self> {
+        Self::build_resolved(compute, &source::resolve_text(name, text), options)
+    }
+
+    fn build_resolved(compute: &Compute, text: &str, options: &BuildOptions) -> Result<Self> {
+        let device = &compute.device;
+        let lanes = options.lanes.unwrap_or(device.lanes);
+        let mut program = ClProgram::create_from_source(&compute.context, text)
+            .map_err(failed(&device.name, "clCreateProgramWithSource"))?;
+        let flags = compiler_flags(lanes, &options.extra);
+        let refused = |code: String, log: String| Error::Build {
+            device: device.name.clone(),
+            code,
+            log,
+        };
+        if CString::new(flags.as_str()).is_err() {
+            return Err(refused(
+                "options contain a NUL byte".to_owned(),
+                String::new(),
+            ));
+        }
+        let id = device.handle.id();
+        program.build(&[id], &flags).map_err(|ClError(code)| {
+            let log = program.get_build_log(id).unwrap_or_default();
+            refused(format!("{} with {flags}", code_name(code)), log)
+        })?;
+        Ok(Self {
+            program,
+            device: device.name.clone(),
+            lanes,
+        })
+    }
+
+    /// One of its kernels.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if there is no such kernel.
+    pub fn kernel(&self, name: &str) -> Result<Kernel> {
+        Kernel::create(&self.program, name).map_err(failed(&self.device, "clCreateKernel"))
+    }
+}
+
+fn compiler_flags(lanes: u32, extra: &str) -> String {
+    let sizes: String = layout::SIZES
+        .iter()
+        .map(|(name, size)| format!(" -D SIZEOF_{}={size}", name.to_uppercase()))
+        .collect();
+    let environment = std::env::var(OPTIONS_VARIABLE).unwrap_or_default();
+    format!(
+        "-cl-std=CL1.2 -D LANES={lanes} -D CORE_FLOOR={CORE_FLOOR:e}f{sizes} {extra} {environment}"
+    )
+    .trim()
+    .to_owned()
+}
+
+/// Sets arguments of a kernel one after the other.
+pub struct Arguments<'a> {
+    kernel: &'a Kernel,
+    device: &'a str,
+    index: u32,
+    result: Result<()>,
+}
+
+impl<'a> Arguments<'a> {
+    /// Begins with the first argument.
+    pub(super) fn new(kernel: &'a Kernel, compute: &'a Compute) -> Self {
+        Self {
+            kernel,
+            device: &compute.device.name,
+            index: 0,
+            result: Ok(()),
+        }
+    }
+
+    /// A struct or number, passed by value; or the handle of a buffer.
+    pub(super) fn value<T>(mut self, value: &T) -> Self {
+        if self.result.is_ok() {
+            // SAFETY: the driver checks index and size against the kernel's own signature and copies the value.
+            self.result = unsafe { self.kernel.set_arg(self.index, value) }
+                .map_err(failed(self.device, "clSetKernelArg"));
+            self.index += 1;
+        }
+        self
+    }
+
+    pub(super) fn finish(self) -> Result<()> {
+        self.result
+    }
+}
+
+/// Enqueues `items` work-items in groups of `group`; the last group may be padded with work-items beyond `items`.
+pub(super) fn enqueue(
+    compute: &Compute,
+    kernel: &Kernel,
+    items: usize,
+    group: usize,
+) -> Result<Event> {
+    let global = items.div_ceil(group) * group;
+    // SAFETY: all arguments are set by the caller; the kernels check their index against the count of work.
+    unsafe {
+        compute.queue.enqueue_nd_range_kernel(
+            kernel.get(),
+            1,
+            std::ptr::null(),
+            &raw const global,
+            &raw const group,
+            &[],
+        )
+    }
+    .map_err(failed(&compute.device.name, "clEnqueueNDRangeKernel"))
+}
+
+impl Program {
+    /// Runs a kernel whose arguments are buffers only, over `items` work-items one by one, and waits for it. For tests
+    /// of single device functions.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if an argument or the launch is refused.
+    pub fn run<T: bytemuck::Pod>(
+        &self,
+        compute: &Compute,
+        kernel: &str,
+        buffers: &[&DeviceBuffer<T>],
+        items: usize,
+    ) -> Result<()> {
+        let kernel = self.kernel(kernel)?;
+        let mut arguments = Arguments::new(&kernel, compute);
+        for buffer in buffers {
+            arguments = arguments.value(&buffer.handle());
+        }
+        arguments.finish()?;
+        enqueue(compute, &kernel, items, 1)?
+            .wait()
+            .map_err(failed(&compute.device.name, "clWaitForEvents"))
+    }
+}

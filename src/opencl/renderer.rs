@@ -1,0 +1,273 @@
+//! Renders scenes on an OpenCL device: uploads what changed, launches the kernels, reads the image back.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use opencl3::kernel::Kernel;
+
+use super::failure::failed;
+use super::launch::{Pace, Part, Work, launch, source_count};
+use super::program::{Arguments, BuildOptions, Program, enqueue};
+use super::{Compute, DeviceBuffer, OpenClDevice, Uploaded};
+use crate::device::DeviceType;
+use crate::error::{Error, Result};
+use crate::pack::{self, Sources, layout};
+use crate::ray::{Ray, ViewPlane};
+use crate::scene::{Method, Scene};
+
+/// A pixel of the output: linear RGBA.
+type Pixel = [f32; 4];
+
+/// A device with its kernels and buffers, which are kept from frame to frame.
+#[derive(Debug)]
+pub struct OpenClRenderer {
+    options: BuildOptions,
+    render: Kernel,
+    trace: Option<Kernel>,
+    lanes: u32,
+    lists: Lists,
+    output: Option<DeviceBuffer<Pixel>>,
+    pace: Pace,
+    compute: Compute,
+}
+
+/// What the kernels read.
+#[derive(Debug)]
+struct Lists {
+    nodes: Uploaded<layout::Node>,
+    spheres: Uploaded<layout::Sphere>,
+    cylinders: Uploaded<layout::Cylinder>,
+    tori: Uploaded<layout::Torus>,
+    curves: Uploaded<layout::Curve>,
+    spline_pieces: Uploaded<layout::SplinePiece>,
+    rays: Uploaded<layout::RayRecord>,
+}
+
+/// One frame or one list of rays, packed.
+struct Job {
+    view: layout::View,
+    sources: Sources,
+    work: Work,
+    has_rays: bool,
+}
+
+impl OpenClRenderer {
+    /// Builds the kernels for a device.
+    ///
+    /// # Errors
+    /// [`Error::Device`] or [`Error::Build`] if the driver refuses.
+    pub fn new(device: &OpenClDevice, options: &BuildOptions) -> Result<Self> {
+        let compute = Compute::new(device)?;
+        let program = Program::build(&compute, &["render.cl"], options)?;
+        Ok(Self {
+            render: program.kernel("render")?,
+            trace: None,
+            lanes: program.lanes,
+            lists: Lists::new(),
+            output: None,
+            pace: Pace::new(),
+            options: options.clone(),
+            compute,
+        })
+    }
+
+    /// The device's properties.
+    pub fn device(&self) -> &OpenClDevice {
+        self.compute.device()
+    }
+
+    /// Renders a valid scene into `target`, RGBA by rows. `progress` hears the finished share and may stop the work.
+    pub(crate) fn render_into(
+        &mut self,
+        scene: &Scene,
+        target: &mut [f32],
+        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<()> {
+        self.require_simpson(scene)?;
+        let plane = ViewPlane::new(&scene.camera, scene.image);
+        let sources = Sources::new(scene, plane.eye, plane.ray_length);
+        let view = pack::view(&plane, scene.image.width, scene.integration.softening);
+        let job = self.upload(scene, view, sources, None)?;
+        self.run(&job, bytemuck::cast_slice_mut(target), progress)
+    }
+
+    /// Linear RGBA along single rays; light is measured over the parameter s.
+    pub(crate) fn trace(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<Pixel>> {
+        self.require_simpson(scene)?;
+        if self.trace.is_none() {
+            let program = Program::build(&self.compute, &["trace.cl"], &self.options)?;
+            self.trace = Some(program.kernel("trace")?);
+        }
+        let origin = rays.first().map_or(glam::DVec3::ZERO, |ray| ray.origin);
+        let records: Vec<_> = rays.iter().map(|ray| pack::ray(ray, origin)).collect();
+        let sources = Sources::new(scene, origin, 1.0);
+        let view = layout::View {
+            softening2: (scene.integration.softening * scene.integration.softening) as f32,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let job = self.upload(scene, view, sources, Some(&records))?;
+        let mut radiances = vec![[0.0; 4]; rays.len()];
+        self.run(&job, &mut radiances, &mut |_| ControlFlow::Continue(()))?;
+        Ok(radiances)
+    }
+
+    fn require_simpson(&self, scene: &Scene) -> Result<()> {
+        match scene.integration.method {
+            Method::Simpson => Ok(()),
+            Method::Exact => Err(Error::Unsupported(format!(
+                "{}: the method \"exact\" is not available on OpenCL devices yet; use --device reference, or --method \
+                 simpson",
+                self.device().name
+            ))),
+        }
+    }
+
+    fn upload(
+        &mut self,
+        scene: &Scene,
+        view: layout::View,
+        sources: Sources,
+        rays: Option<&[layout::RayRecord]>,
+    ) -> Result<Job> {
+        let nodes = pack::nodes(scene.integration.divisions, scene.decay);
+        let lists = &mut self.lists;
+        lists.nodes.upload(&self.compute, &nodes)?;
+        lists.spheres.upload(&self.compute, &sources.spheres)?;
+        lists.cylinders.upload(&self.compute, &sources.cylinders)?;
+        lists.tori.upload(&self.compute, &sources.tori)?;
+        lists.curves.upload(&self.compute, &sources.curves)?;
+        let pieces = &sources.spline_pieces;
+        lists.spline_pieces.upload(&self.compute, pieces)?;
+        if let Some(rays) = rays {
+            lists.rays.upload(&self.compute, rays)?;
+        }
+        let units = self.device().compute_units;
+        Ok(Job {
+            view,
+            work: Work {
+                node_count: nodes.len() as u32,
+                source_count: source_count(&sources),
+                fewest_pixels: (256 * units).max(1024),
+            },
+            sources,
+            has_rays: rays.is_some(),
+        })
+    }
+
+    /// Renders all of `target` in bands that fit into one buffer of the device.
+    fn run(
+        &mut self,
+        job: &Job,
+        target: &mut [Pixel],
+        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<()> {
+        self.pace.begin(&job.sources);
+        let total = target.len() as f32;
+        let band_len = self.band_len(target.len())?;
+        for (index, band) in target.chunks_mut(band_len).enumerate() {
+            let begin = (index * band_len) as u32;
+            let end = begin + band.len() as u32;
+            let mut pixel = begin;
+            while pixel < end {
+                let pixels = pixel..pixel + self.pace.pixels(&job.work, end - pixel);
+                self.launch_pixels(job, pixels.clone(), pixels.start - begin)?;
+                pixel = pixels.end;
+                if progress(pixel as f32 / total).is_break() {
+                    return Err(Error::Interrupted);
+                }
+            }
+            if let Some(output) = &self.output {
+                output.read(&self.compute, band)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Renders some pixels with all sources, in one launch or in several that add up.
+    fn launch_pixels(&mut self, job: &Job, pixels: std::ops::Range<u32>, slot: u32) -> Result<()> {
+        let all = job.work.source_count;
+        let mut source = 0;
+        loop {
+            let count = self
+                .pace
+                .sources(&job.work, pixels.len() as u32, all - source);
+            let part = Part {
+                pixels: pixels.clone(),
+                sources: source..source + count,
+            };
+            let begun = Instant::now();
+            self.launch(job, &launch(&part, slot, &job.sources, job.work.node_count))?;
+            self.pace
+                .measured(part.evaluations(&job.work), begun.elapsed());
+            source = part.sources.end;
+            if source >= all {
+                return Ok(());
+            }
+        }
+    }
+
+    fn launch(&self, job: &Job, launch: &layout::Launch) -> Result<()> {
+        let kernel = match &self.trace {
+            Some(trace) if job.has_rays => trace,
+            _ => &self.render,
+        };
+        let lists = &self.lists;
+        let output = self
+            .output
+            .as_ref()
+            .map_or(std::ptr::null_mut(), DeviceBuffer::handle);
+        let mut arguments = Arguments::new(kernel, &self.compute)
+            .value(&job.view)
+            .value(launch)
+            .value(&lists.nodes.handle())
+            .value(&lists.spheres.handle())
+            .value(&lists.cylinders.handle())
+            .value(&lists.tori.handle())
+            .value(&lists.curves.handle())
+            .value(&lists.spline_pieces.handle())
+            .value(&output);
+        if job.has_rays {
+            arguments = arguments.value(&lists.rays.handle());
+        }
+        arguments.finish()?;
+        let group = match self.device().device_type {
+            DeviceType::Gpu => 64,
+            _ => 16,
+        };
+        let items = (launch.count as usize).div_ceil(self.lanes as usize);
+        enqueue(&self.compute, kernel, items, group)?
+            .wait()
+            .map_err(failed(&self.device().name, "clWaitForEvents"))
+    }
+
+    /// Makes sure of an output buffer for `pixels` pixels, or for as many as the device's limits allow.
+    fn band_len(&mut self, pixels: usize) -> Result<usize> {
+        let device = &self.compute.device;
+        // A quarter of the memory leaves room for the sources and for everyone else.
+        let bytes = device.max_allocation_bytes.min(device.memory_bytes / 4);
+        let most = (bytes as usize / size_of::<Pixel>()).max(1);
+        let wanted = pixels.min(most);
+        match &self.output {
+            Some(output) if output.len() >= wanted => {}
+            _ => {
+                self.output = None;
+                self.output = Some(DeviceBuffer::new(&self.compute, "the image", wanted)?);
+            }
+        }
+        Ok(wanted.max(1))
+    }
+}
+
+impl Lists {
+    fn new() -> Self {
+        Self {
+            nodes: Uploaded::new("the list of quadrature nodes"),
+            spheres: Uploaded::new("the list of spheres"),
+            cylinders: Uploaded::new("the list of cylinders"),
+            tori: Uploaded::new("the list of tori"),
+            curves: Uploaded::new("the list of curves"),
+            spline_pieces: Uploaded::new("the list of spline pieces"),
+            rays: Uploaded::new("the list of rays"),
+        }
+    }
+}

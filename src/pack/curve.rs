@@ -1,0 +1,102 @@
+//! A Bezier curve in its own frame: the plane of its parabola, origin C(1/2).
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::layout;
+use super::{Frame, vector};
+use crate::scene::Curve;
+
+/// Below this ratio of `|C2|` to `|C'(1/2)|` a curve counts as straight: the cubic's roots would lose digits to its
+/// far-off vertex, while the kernels' foot on the tangent, corrected twice, leaves errors of the ratio's cube.
+const STRAIGHT: f64 = 1e-3;
+
+pub(super) fn curve(frame: &Frame, curve: &Curve, spline: Range<u32>) -> layout::Curve {
+    let [b0, b1, b2] = curve.control_points;
+    let c2 = b0 - 2.0 * b1 + b2;
+    let middle = 0.25 * b0 + 0.5 * b1 + 0.25 * b2;
+    let velocity = b2 - b0; // C'(1/2)
+    let bend = c2.length();
+    let is_straight = bend <= STRAIGHT * velocity.length();
+    // `across` follows C2 where there is any; what lies perpendicular to the velocity serves the rest.
+    let across = c2
+        .try_normalize()
+        .or_else(|| velocity.try_normalize().map(|v| v.any_orthonormal_vector()))
+        .unwrap_or(DVec3::Y);
+    let along = velocity - across * velocity.dot(across);
+    let along = if along.length() > 1e-12 * velocity.length() {
+        along.normalize()
+    } else {
+        across.any_orthonormal_vector()
+    };
+    let velocity_across = velocity.dot(across);
+    layout::Curve {
+        middle: frame.position(middle),
+        along: vector(along),
+        across: vector(across),
+        normal: vector(along.cross(across)),
+        emission: frame.emission(curve.coefficient, curve.color),
+        velocity_along: velocity.dot(along) as f32,
+        velocity_across: velocity_across as f32,
+        bend: bend as f32,
+        vertex: if is_straight {
+            0.0
+        } else {
+            (0.5 * velocity_across / bend) as f32
+        },
+        is_straight: u32::from(is_straight),
+        spline_begin: spline.start,
+        spline_count: spline.end - spline.start,
+        padding: 0,
+    }
+}
+
+/// The polynomial pieces of the clamped uniform quadratic B-spline (2015, eq. 14-16): each is a quadratic Bezier whose
+/// inner control value is the weight, and whose ends are the means of two weights, or an end weight itself.
+pub(super) fn spline_pieces(series: &[f64]) -> impl Iterator<Item = layout::SplinePiece> {
+    let last = series.len() - 1;
+    let joint = move |i: usize| match i {
+        0 => series[0],
+        i if i == last - 1 => series[last],
+        i => 0.5 * (series[i] + series[i + 1]),
+    };
+    (0..last - 1).map(move |i| {
+        let (from, control, to) = (joint(i), series[i + 1], joint(i + 1));
+        layout::SplinePiece {
+            c0: from as f32,
+            c1: (2.0 * (control - from)) as f32,
+            c2: (from - 2.0 * control + to) as f32,
+            padding: 0.0,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::b_spline;
+
+    #[test]
+    fn the_pieces_are_the_spline() {
+        for series in [
+            vec![1.0, 0.6, 0.2, 0.4, 0.8, 0.6, 1.0],
+            vec![2.0, 5.0, 3.0],
+            vec![0.1, 0.9, 0.4, 0.7],
+        ] {
+            let pieces: Vec<_> = spline_pieces(&series).collect();
+            assert_eq!(pieces.len(), series.len() - 2);
+            for k in 0..=100 {
+                let t = f64::from(k) / 100.0;
+                let scaled = t * pieces.len() as f64;
+                let index = (scaled as usize).min(pieces.len() - 1);
+                let x = scaled - index as f64;
+                let piece = pieces[index];
+                let value =
+                    f64::from(piece.c0) + x * (f64::from(piece.c1) + x * f64::from(piece.c2));
+                let expected = b_spline(&series, t);
+                assert!((value - expected).abs() < 1e-6, "{t}: {value} {expected}");
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Scene to device structs: world space to positions seen from the eye, float64 to float32, curves to their own frame.
+
+mod curve;
+pub mod layout;
+
+use glam::DVec3;
+
+use crate::ray::{Ray, ViewPlane};
+use crate::reference::simpson_nodes;
+use crate::scene::{Cylinder, Decay, Measure, Scene, Sphere, Torus};
+
+/// A scene's sources as the kernels read them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Sources {
+    /// Points of light.
+    pub spheres: Vec<layout::Sphere>,
+    /// Lines of light.
+    pub cylinders: Vec<layout::Cylinder>,
+    /// Rings of light.
+    pub tori: Vec<layout::Torus>,
+    /// Curves of light.
+    pub curves: Vec<layout::Curve>,
+    /// Pieces of all curves' intensity series.
+    pub spline_pieces: Vec<layout::SplinePiece>,
+}
+
+/// Where the float32 coordinates begin, and what every emission is multiplied with.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
+    origin: DVec3,
+    measure: f64,
+}
+
+impl Frame {
+    fn position(&self, point: DVec3) -> [f32; 4] {
+        vector(point - self.origin)
+    }
+
+    fn emission(&self, coefficient: f64, color: DVec3) -> [f32; 4] {
+        vector(color * (coefficient * self.measure))
+    }
+}
+
+impl Sources {
+    /// Packs all sources of a valid scene as seen from `origin`, world space. With [`Measure::Length`] every emission is
+    /// multiplied with `ray_length`, `|E - S|`.
+    pub fn new(scene: &Scene, origin: DVec3, ray_length: f64) -> Self {
+        let measure = match scene.integration.measure {
+            Measure::Parameter => 1.0,
+            Measure::Length => ray_length,
+        };
+        let frame = Frame { origin, measure };
+        let mut packed = Self {
+            spheres: scene.spheres.iter().map(|s| sphere(&frame, s)).collect(),
+            cylinders: scene
+                .cylinders
+                .iter()
+                .map(|c| cylinder(&frame, c))
+                .collect(),
+            tori: scene.tori.iter().map(|t| torus(&frame, t)).collect(),
+            curves: Vec::new(),
+            spline_pieces: Vec::new(),
+        };
+        for curve in &scene.curves {
+            let begin = packed.spline_pieces.len();
+            if let Some(series) = &curve.intensity {
+                packed.spline_pieces.extend(curve::spline_pieces(series));
+            }
+            let count = packed.spline_pieces.len() - begin;
+            let spline = begin as u32..(begin + count) as u32;
+            packed.curves.push(curve::curve(&frame, curve, spline));
+        }
+        packed
+    }
+}
+
+/// The view plane as the kernels read it.
+pub fn view(plane: &ViewPlane, width: u32, softening: f64) -> layout::View {
+    layout::View {
+        first_pixel: vector(plane.first_pixel),
+        column_step: vector(plane.column_step),
+        row_step: vector(plane.row_step),
+        ray_length: plane.ray_length as f32,
+        softening2: (softening * softening) as f32,
+        width,
+        padding: 0,
+    }
+}
+
+/// A ray as the kernels read it, its origin seen from `origin`.
+pub fn ray(ray: &Ray, origin: DVec3) -> layout::RayRecord {
+    layout::RayRecord {
+        origin: vector(ray.origin - origin),
+        span: vector(ray.span),
+    }
+}
+
+/// The nodes of the composite Simpson rule, the decay in their weights.
+pub fn nodes(divisions: u32, decay: Option<Decay>) -> Vec<layout::Node> {
+    simpson_nodes(divisions)
+        .map(|(s, weight)| layout::Node {
+            s: s as f32,
+            weight: (weight * decay.map_or(1.0, |decay| decay.at(s))) as f32,
+        })
+        .collect()
+}
+
+fn sphere(frame: &Frame, sphere: &Sphere) -> layout::Sphere {
+    layout::Sphere {
+        center: frame.position(sphere.center),
+        emission: frame.emission(sphere.coefficient, sphere.color),
+    }
+}
+
+fn cylinder(frame: &Frame, cylinder: &Cylinder) -> layout::Cylinder {
+    let direction = cylinder.direction.normalize();
+    let to_eye = frame.origin - cylinder.point;
+    let nearest_to_eye = cylinder.point + direction * to_eye.dot(direction);
+    layout::Cylinder {
+        point: frame.position(nearest_to_eye),
+        direction: vector(direction),
+        emission: frame.emission(cylinder.coefficient, cylinder.color),
+    }
+}
+
+fn torus(frame: &Frame, torus: &Torus) -> layout::Torus {
+    layout::Torus {
+        center: frame.position(torus.center),
+        axis: vector(torus.axis.normalize()),
+        emission: frame.emission(torus.coefficient, torus.color),
+        major_radius: torus.major_radius as f32,
+        padding_0: 0.0,
+        padding_1: 0.0,
+        padding_2: 0.0,
+    }
+}
+
+fn vector(v: DVec3) -> [f32; 4] {
+    [v.x as f32, v.y as f32, v.z as f32, 0.0]
+}

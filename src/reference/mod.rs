@@ -1,0 +1,188 @@
+//! The truth in float64, by another method than the kernels': adaptive quadrature on the pieces between the points where
+//! a ray comes closest to a core. Also the built-in device `reference`, which needs no OpenCL.
+//!
+//! [`simpson`] is the paper's composite rule in float64, to check the kernels' Simpson.
+
+mod curve;
+mod field;
+mod quadrature;
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+pub use curve::{CurveField, b_spline};
+pub use field::{Field, Sample};
+pub use quadrature::{Estimate, integrate};
+
+use crate::error::{Error, Result};
+use crate::image::RadianceImage;
+use crate::ray::{Ray, ViewPlane};
+use crate::scene::{Decay, Measure, Method, Scene};
+
+/// Relative error that [`exact`] aims at.
+pub const RELATIVE_ERROR: f64 = 1e-10;
+
+/// On every device the squared distance is never taken below `(CORE_FLOOR |E - S|)^2`, so that every pixel is finite.
+pub const CORE_FLOOR: f64 = 1e-6;
+
+/// One source of light: `emission` times the integral of its field.
+#[derive(Debug, Clone)]
+pub struct Source {
+    /// The scalar field.
+    pub field: Field,
+    /// Colour times coefficient, linear RGB.
+    pub emission: DVec3,
+}
+
+/// Every source of a scene, spheres first, then cylinders, tori, curves.
+pub fn sources(scene: &Scene) -> Vec<Source> {
+    let source = |field, coefficient: f64, color: DVec3| Source {
+        field,
+        emission: color * coefficient,
+    };
+    let spheres = scene
+        .spheres
+        .iter()
+        .map(|s| source(Field::Sphere(s.clone()), s.coefficient, s.color));
+    let cylinders = scene.cylinders.iter().map(|c| {
+        let mut unit = c.clone();
+        unit.direction = c.direction.normalize();
+        source(Field::Cylinder(unit), c.coefficient, c.color)
+    });
+    let tori = scene.tori.iter().map(|t| {
+        let mut unit = t.clone();
+        unit.axis = t.axis.normalize();
+        source(Field::Torus(unit), t.coefficient, t.color)
+    });
+    let curves = scene
+        .curves
+        .iter()
+        .map(|c| source(Field::Curve(CurveField::new(c)), c.coefficient, c.color));
+    spheres.chain(cylinders).chain(tori).chain(curves).collect()
+}
+
+/// What is integrated along a ray besides the field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Integrand {
+    /// Decay; `None`: zeta = 1.
+    pub decay: Option<Decay>,
+    /// Softening radius, world units.
+    pub softening: f64,
+}
+
+impl Integrand {
+    /// `psi(L(s)) zeta(s)` for one field of coefficient 1.
+    pub fn at(&self, field: &Field, ray: &Ray, s: f64) -> f64 {
+        let floor = CORE_FLOOR * CORE_FLOOR * ray.span.length_squared();
+        let sample = field.sample(ray.at(s));
+        let distance2 = (sample.distance2 + self.softening * self.softening).max(floor);
+        let zeta = self.decay.map_or(1.0, |decay| decay.at(s));
+        zeta * sample.intensity / distance2.sqrt()
+    }
+}
+
+/// The integral over s in [0,1] of a field times the decay, to [`RELATIVE_ERROR`].
+pub fn exact(field: &Field, ray: &Ray, integrand: &Integrand) -> f64 {
+    let mut breaks = Vec::with_capacity(16);
+    field.breaks(ray, &mut breaks);
+    integrate(|s| integrand.at(field, ray, s), &mut breaks, RELATIVE_ERROR).value
+}
+
+/// The same integral by the composite Simpson rule with an even number of equal divisions (2015, eq. 23).
+pub fn simpson(field: &Field, ray: &Ray, integrand: &Integrand, divisions: u32) -> f64 {
+    simpson_nodes(divisions)
+        .map(|(s, weight)| weight * integrand.at(field, ray, s))
+        .sum()
+}
+
+/// Parameter and weight of each of the `divisions + 1` samples of the composite Simpson rule over [0,1].
+pub fn simpson_nodes(divisions: u32) -> impl Iterator<Item = (f64, f64)> {
+    let n = f64::from(divisions);
+    (0..=divisions).map(move |k| {
+        let factor = match k {
+            0 => 1.0,
+            k if k == divisions => 1.0,
+            k if k % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        (f64::from(k) / n, factor / (3.0 * n))
+    })
+}
+
+/// The scene's linear radiance in float64, every integral to [`RELATIVE_ERROR`], whatever the scene's method. Runs on all
+/// cores.
+///
+/// # Errors
+/// [`Error::Scene`] if the scene is not valid, [`Error::OutOfMemory`] if the image is too large for memory.
+pub fn render(scene: &Scene) -> Result<RadianceImage> {
+    render_image(scene, Method::Exact)
+}
+
+/// The scene's linear radiance by the float64 Simpson rule with the scene's divisions.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_simpson(scene: &Scene) -> Result<RadianceImage> {
+    render_image(scene, Method::Simpson)
+}
+
+fn render_image(scene: &Scene, method: Method) -> Result<RadianceImage> {
+    scene.validate()?;
+    let mut image = RadianceImage::new(scene.image)?;
+    let nothing = &mut |_: f32| ControlFlow::Continue(());
+    render_into(scene, method, image.as_mut_slice(), nothing)?;
+    Ok(image)
+}
+
+/// Renders a validated scene into `target`, RGBA by rows, in bands between which `progress` may stop the work.
+pub(crate) fn render_into(
+    scene: &Scene,
+    method: Method,
+    target: &mut [f32],
+    progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+) -> Result<()> {
+    let width = scene.image.width as usize;
+    let plane = ViewPlane::new(&scene.camera, scene.image);
+    let sources = sources(scene);
+    let integrand = Integrand {
+        decay: scene.decay,
+        softening: scene.integration.softening,
+    };
+    let measure = match scene.integration.measure {
+        Measure::Parameter => 1.0,
+        Measure::Length => plane.ray_length,
+    };
+    let radiance = |ray: &Ray| -> DVec3 {
+        sources
+            .iter()
+            .map(|source| {
+                let integral = match method {
+                    Method::Exact => exact(&source.field, ray, &integrand),
+                    Method::Simpson => {
+                        simpson(&source.field, ray, &integrand, scene.integration.divisions)
+                    }
+                };
+                source.emission * integral * measure
+            })
+            .sum()
+    };
+    let band_rows = 16384_usize.div_ceil(width);
+    let bands = target.chunks_mut(4 * width * band_rows);
+    let band_count = bands.len();
+    for (band, pixels) in bands.enumerate() {
+        pixels
+            .par_chunks_exact_mut(4)
+            .enumerate()
+            .for_each(|(i, pixel)| {
+                let (row, column) = (band * band_rows + i / width, i % width);
+                let light = radiance(&plane.ray(column as u32, row as u32)).as_vec3();
+                pixel.copy_from_slice(&[light.x, light.y, light.z, 1.0]);
+            });
+        if progress((band + 1) as f32 / band_count as f32).is_break() {
+            return Err(Error::Interrupted);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,329 @@
+//! The scene: what glows, who looks, and how the light is summed. Plain data, buildable in code, readable from TOML or
+//! JSON ([`Scene::from_file`]), checked once ([`Scene::validate`]).
+//!
+//! All vectors are world space, right-handed; lengths in world units; angles in degrees; colours linear RGB.
+
+mod locate;
+mod read;
+mod validate;
+
+use glam::DVec3;
+use serde::Deserialize;
+
+/// A complete scene: camera, image size, the way of integrating, and the sources of light.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Who looks, and along which rays.
+    pub camera: Camera,
+    /// Size of the image.
+    #[serde(default)]
+    pub image: ImageSize,
+    /// How light fades along a ray; `None`: it does not (zeta = 1).
+    #[serde(default)]
+    pub decay: Option<Decay>,
+    /// How the integral along a ray is computed.
+    #[serde(default)]
+    pub integration: Integration,
+    /// How radiance becomes an 8-bit picture.
+    #[serde(default)]
+    pub display: Display,
+    /// Points of light.
+    #[serde(default, rename = "sphere")]
+    pub spheres: Vec<Sphere>,
+    /// Infinite lines of light.
+    #[serde(default, rename = "cylinder")]
+    pub cylinders: Vec<Cylinder>,
+    /// Rings of light.
+    #[serde(default, rename = "torus")]
+    pub tori: Vec<Torus>,
+    /// Quadratic curves of light.
+    #[serde(default, rename = "curve")]
+    pub curves: Vec<Curve>,
+}
+
+impl Scene {
+    /// A scene without sources, which is black: 512x512 pixels, no decay, everything else at its default.
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            camera,
+            image: ImageSize::default(),
+            decay: None,
+            integration: Integration::default(),
+            display: Display::default(),
+            spheres: Vec::new(),
+            cylinders: Vec::new(),
+            tori: Vec::new(),
+            curves: Vec::new(),
+        }
+    }
+
+    /// Number of sources of all kinds.
+    pub fn source_count(&self) -> usize {
+        self.spheres.len() + self.cylinders.len() + self.tori.len() + self.curves.len()
+    }
+}
+
+/// A pinhole camera and the length of its rays.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Camera {
+    /// Position of the eye.
+    pub eye: DVec3,
+    /// The point looked at, in the middle of the image.
+    pub target: DVec3,
+    /// The direction that is up in the image; need not be perpendicular to the view.
+    #[serde(default = "plus_z")]
+    pub up: DVec3,
+    /// Full vertical angle of view, degrees.
+    #[serde(default = "default_fov_y")]
+    pub fov_y: f64,
+    /// Distance from the eye to the projection plane, where the rays begin.
+    #[serde(default = "one")]
+    pub near: f64,
+    /// Length of every ray, `|E - S|`; `None`: 5 times the distance from the projection plane to the target.
+    #[serde(default)]
+    pub ray_length: Option<f64>,
+}
+
+impl Camera {
+    /// A camera at `eye` that looks at `target`: +z up, 45 degrees, projection plane at 1.
+    pub fn new(eye: DVec3, target: DVec3) -> Self {
+        Self {
+            eye,
+            target,
+            up: plus_z(),
+            fov_y: default_fov_y(),
+            near: one(),
+            ray_length: None,
+        }
+    }
+
+    /// Length of every ray, `|E - S|`, world units.
+    pub fn ray_length(&self) -> f64 {
+        let beyond_plane = self.eye.distance(self.target) - self.near;
+        self.ray_length.unwrap_or(5.0 * beyond_plane)
+    }
+}
+
+/// Size of an image in pixels, at most [`ImageSize::LIMIT`] each way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ImageSize {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+}
+
+impl ImageSize {
+    /// The largest width and the largest height.
+    pub const LIMIT: u32 = 16384;
+
+    /// Number of pixels.
+    pub fn pixels(self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+impl Default for ImageSize {
+    fn default() -> Self {
+        Self {
+            width: 512,
+            height: 512,
+        }
+    }
+}
+
+/// Decay with distance, `zeta(s) = alpha / (s + beta)^2` (Watanabe, Abe, Konno 2015, eq. 21), over s in [0,1].
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Decay {
+    /// Strength; positive.
+    pub alpha: f64,
+    /// Offset; positive.
+    pub beta: f64,
+}
+
+impl Decay {
+    /// `zeta(s)`.
+    pub fn at(self, s: f64) -> f64 {
+        self.alpha / ((s + self.beta) * (s + self.beta))
+    }
+}
+
+/// How the integral along a ray is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Integration {
+    /// The quadrature.
+    pub method: Method,
+    /// Simpson: number of equal divisions, even, 2 to 65536.
+    pub divisions: u32,
+    /// Exact: relative error aimed at.
+    pub tolerance: f64,
+    /// Over what the integral runs.
+    pub measure: Measure,
+    /// Softening radius epsilon: the squared distance to every core grows by its square.
+    pub softening: f64,
+}
+
+impl Default for Integration {
+    fn default() -> Self {
+        Self {
+            method: Method::Simpson,
+            divisions: 200,
+            tolerance: 1e-3,
+            measure: Measure::Parameter,
+            softening: 0.0,
+        }
+    }
+}
+
+/// A quadrature.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// Composite Simpson rule with equal divisions (2015, eq. 23), beads at the core included.
+    Simpson,
+    /// The integral itself, to a stated relative error.
+    Exact,
+}
+
+/// Over what the integral runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Measure {
+    /// The ray's parameter s in [0,1] (2015).
+    Parameter,
+    /// Length in world units: `|E - S|` times as much (2010, 2006).
+    Length,
+}
+
+/// How linear radiance becomes an 8-bit picture.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Display {
+    /// Exposure in stops: radiance times `2^exposure`.
+    pub exposure: f64,
+    /// The curve that brings radiance into [0,1].
+    pub tone_map: ToneMap,
+}
+
+impl Default for Display {
+    fn default() -> Self {
+        Self {
+            exposure: 0.0,
+            tone_map: ToneMap::Exponential,
+        }
+    }
+}
+
+/// A tone-mapping curve, applied to each channel `L` of exposed radiance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ToneMap {
+    /// `min(L, 1)`.
+    Clamp,
+    /// `1 - exp(-L)`.
+    Exponential,
+    /// `L / (1 + L)` (Reinhard et al. 2002).
+    Reinhard,
+    /// The rational fit to the ACES filmic curve by Narkowicz 2015.
+    Aces,
+}
+
+/// A point of light: field `1/|P - M|` (2015, eq. 2).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sphere {
+    /// The point, M.
+    pub center: DVec3,
+    /// The paper's energy coefficient.
+    pub coefficient: f64,
+    /// Linear RGB.
+    pub color: DVec3,
+}
+
+impl Default for Sphere {
+    fn default() -> Self {
+        Self {
+            center: DVec3::ZERO,
+            coefficient: 1.0,
+            color: DVec3::ONE,
+        }
+    }
+}
+
+/// An infinite line of light: field 1 over the distance to the line (2015, eq. 3).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cylinder {
+    /// A point of the line.
+    #[serde(default)]
+    pub point: DVec3,
+    /// Direction of the line, of any length but zero.
+    pub direction: DVec3,
+    /// The paper's energy coefficient.
+    #[serde(default = "one")]
+    pub coefficient: f64,
+    /// Linear RGB.
+    #[serde(default = "white")]
+    pub color: DVec3,
+}
+
+/// A ring of light: field 1 over the distance to the nearest point of the major circle (2015, eq. 7).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Torus {
+    /// Middle of the ring.
+    #[serde(default)]
+    pub center: DVec3,
+    /// Normal of the ring's plane, of any length but zero.
+    #[serde(default = "plus_z")]
+    pub axis: DVec3,
+    /// Radius of the circle, positive.
+    pub major_radius: f64,
+    /// The paper's energy coefficient.
+    #[serde(default = "one")]
+    pub coefficient: f64,
+    /// Linear RGB.
+    #[serde(default = "white")]
+    pub color: DVec3,
+}
+
+/// A quadratic Bezier curve of light: field 1 over the distance to its nearest point `C(t*)`, times the local intensity
+/// `S(t*)` (2015, eq. 8-17).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Curve {
+    /// Bezier control points. They may be collinear or coincide.
+    #[serde(deserialize_with = "read::three_points")]
+    pub control_points: [DVec3; 3],
+    /// The paper's energy coefficient.
+    #[serde(default = "one")]
+    pub coefficient: f64,
+    /// Linear RGB.
+    #[serde(default = "white")]
+    pub color: DVec3,
+    /// The local-intensity series W: weights of a clamped uniform quadratic B-spline over the curve's parameter, at
+    /// least 3; `None`: 1 everywhere.
+    #[serde(default)]
+    pub intensity: Option<Vec<f64>>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn default_fov_y() -> f64 {
+    45.0
+}
+
+fn plus_z() -> DVec3 {
+    DVec3::Z
+}
+
+fn white() -> DVec3 {
+    DVec3::ONE
+}

@@ -1,0 +1,141 @@
+//! Reads a scene from TOML or JSON; every fault is reported with file, line, column and key.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
+
+use super::Scene;
+use super::locate::{KeyMap, line_and_column};
+use crate::error::{Error, Result, SceneError};
+
+impl Scene {
+    /// Reads and validates a scene file; the ending chooses: `.json` is JSON, everything else TOML.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if the file cannot be read, [`Error::Scene`] if it does not hold a valid scene.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let text = read_text(path)?;
+        let is_json = path.extension().is_some_and(|ending| ending == "json");
+        let scene = if is_json {
+            Self::from_json(&text)
+        } else {
+            Self::from_toml(&text)
+        };
+        scene.map_err(|error| name_file(error, path))
+    }
+
+    /// Reads and validates a scene in TOML.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] with line, column and key.
+    pub fn from_toml(text: &str) -> Result<Self> {
+        let locate = |key: &str| {
+            let offset = KeyMap::new(text).offset_of(key);
+            line_and_column(text, offset.unwrap_or(0))
+        };
+        let scene: Self = toml::from_str(text).map_err(|error| toml_fault(text, &error))?;
+        scene.check().map_err(|mut fault| {
+            fault.position = Some(locate(&fault.key));
+            fault
+        })?;
+        Ok(scene)
+    }
+
+    /// Reads and validates a scene in JSON, of the same structure as the TOML.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] with the key; faults of the syntax have line and column too.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let mut reader = serde_json::Deserializer::from_str(text);
+        let scene: Self = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+            let key = error.path().to_string();
+            let inner = error.inner();
+            SceneError {
+                path: None,
+                position: (inner.line() > 0).then(|| (inner.line(), inner.column())),
+                key: if key == "." { String::new() } else { key },
+                message: plain_words(without_position(&inner.to_string())),
+            }
+        })?;
+        reader.end().map_err(|error| SceneError {
+            path: None,
+            position: Some((error.line(), error.column())),
+            key: String::new(),
+            message: plain_words(without_position(&error.to_string())),
+        })?;
+        scene.check()?;
+        Ok(scene)
+    }
+}
+
+fn read_text(path: &Path) -> Result<String> {
+    let fail = |reason: String| Error::Input {
+        path: path.to_owned(),
+        reason,
+    };
+    let bytes = std::fs::read(path).map_err(|error| fail(format!("cannot read: {error}")))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        fail(format!(
+            "not a text file: byte {at} is no UTF-8; a scene is TOML or JSON text"
+        ))
+    })
+}
+
+/// A fault of syntax, type or key name, as the TOML reader found it.
+fn toml_fault(text: &str, error: &toml::de::Error) -> SceneError {
+    let offset = error.span().map_or(0, |span| span.start);
+    let key = KeyMap::new(text).path_at(offset).unwrap_or("").to_owned();
+    let mut message = plain_words(error.message());
+    if text.trim().is_empty() {
+        message = "the file is empty; a scene needs at least [camera] with eye and target".into();
+    }
+    SceneError {
+        path: None,
+        position: Some(line_and_column(text, offset)),
+        key,
+        message,
+    }
+}
+
+/// serde speaks of Rust types; a scene's author thinks of numbers.
+fn plain_words(message: &str) -> String {
+    message
+        .trim()
+        .replace("floating point `", "number `")
+        .replace("expected f64", "expected a number")
+        .replace("expected u32", "expected a whole number, not negative")
+        .replace("expected struct ", "expected the table of ")
+        .replace('\n', "; ")
+}
+
+/// serde_json ends its messages with a position that stands at the front of ours.
+fn without_position(message: &str) -> &str {
+    message.split(" at line ").next().unwrap_or(message)
+}
+
+fn name_file(error: Error, path: &Path) -> Error {
+    match error {
+        Error::Scene(mut fault) => {
+            fault.path = Some(PathBuf::from(path));
+            Error::Scene(fault)
+        }
+        other => other,
+    }
+}
+
+/// Exactly three control points.
+pub(super) fn three_points<'de, D: Deserializer<'de>>(
+    reader: D,
+) -> std::result::Result<[DVec3; 3], D::Error> {
+    let points = Vec::<DVec3>::deserialize(reader)?;
+    let found = points.len();
+    points.try_into().map_err(|_| {
+        D::Error::custom(format!(
+            "a quadratic curve has three control points, found {found}"
+        ))
+    })
+}

@@ -1,0 +1,210 @@
+//! The one check of a scene's values. What passes here needs no defence further on: not in the packing, not in a kernel.
+
+use glam::DVec3;
+
+use super::{Camera, Curve, ImageSize, Integration, Scene};
+use crate::error::{Result, SceneError};
+
+/// Largest magnitude of any number, smallest of a positive one: squares and cubes of what lies between stay finite and
+/// normal in the devices' float32.
+const LARGEST: f64 = 1e9;
+const SMALLEST: f64 = 1e-9;
+
+type Checked = std::result::Result<(), SceneError>;
+
+impl Scene {
+    /// Checks every value. The renderer calls it too: call it where you want the fault before the frame.
+    ///
+    /// # Errors
+    /// [`crate::Error::Scene`] with the key of the first value that cannot be drawn.
+    pub fn validate(&self) -> Result<()> {
+        Ok(self.check()?)
+    }
+
+    pub(super) fn check(&self) -> Checked {
+        check_camera(&self.camera)?;
+        check_size(self.image)?;
+        if let Some(decay) = self.decay {
+            positive("decay.alpha", decay.alpha)?;
+            positive("decay.beta", decay.beta)?;
+        }
+        check_integration(&self.integration)?;
+        finite("display.exposure", self.display.exposure)?;
+        if self.display.exposure.abs() > 100.0 {
+            return fault("display.exposure", "more than 100 stops");
+        }
+        for (i, sphere) in self.spheres.iter().enumerate() {
+            let key = |name| format!("sphere[{i}].{name}");
+            vector(&key("center"), sphere.center)?;
+            light(&key, sphere.coefficient, sphere.color)?;
+        }
+        for (i, cylinder) in self.cylinders.iter().enumerate() {
+            let key = |name| format!("cylinder[{i}].{name}");
+            vector(&key("point"), cylinder.point)?;
+            direction(&key("direction"), cylinder.direction)?;
+            light(&key, cylinder.coefficient, cylinder.color)?;
+        }
+        for (i, torus) in self.tori.iter().enumerate() {
+            let key = |name| format!("torus[{i}].{name}");
+            vector(&key("center"), torus.center)?;
+            direction(&key("axis"), torus.axis)?;
+            positive(&key("major_radius"), torus.major_radius)?;
+            light(&key, torus.coefficient, torus.color)?;
+        }
+        for (i, curve) in self.curves.iter().enumerate() {
+            check_curve(i, curve)?;
+        }
+        Ok(())
+    }
+}
+
+fn check_camera(camera: &Camera) -> Checked {
+    vector("camera.eye", camera.eye)?;
+    vector("camera.target", camera.target)?;
+    direction("camera.up", camera.up)?;
+    finite("camera.fov_y", camera.fov_y)?;
+    if !(0.001..180.0).contains(&camera.fov_y) {
+        return fault(
+            "camera.fov_y",
+            "must lie between 0.001 and 180 degrees, 180 excluded",
+        );
+    }
+    positive("camera.near", camera.near)?;
+    let view = camera.target - camera.eye;
+    if view.length() < SMALLEST {
+        return fault(
+            "camera.target",
+            "the same point as camera.eye: there is no view direction",
+        );
+    }
+    if view.normalize().cross(camera.up.normalize()).length() < 1e-6 {
+        return fault(
+            "camera.up",
+            "parallel to the view direction; choose any other",
+        );
+    }
+    match camera.ray_length {
+        Some(length) => positive("camera.ray_length", length),
+        None if camera.ray_length() < SMALLEST => fault(
+            "camera.near",
+            "the projection plane lies behind the target, so ray_length has no default: \
+             give camera.ray_length, or a smaller near",
+        ),
+        None => Ok(()),
+    }
+}
+
+fn check_size(size: ImageSize) -> Checked {
+    let limit = ImageSize::LIMIT;
+    for (key, pixels) in [("image.width", size.width), ("image.height", size.height)] {
+        if pixels == 0 {
+            return fault(key, "must be at least 1 pixel");
+        }
+        if pixels > limit {
+            return fault(
+                key,
+                format!("{pixels} pixels; an image is at most {limit}x{limit}"),
+            );
+        }
+    }
+    Ok(())
+}
+
+fn check_integration(integration: &Integration) -> Checked {
+    let divisions = integration.divisions;
+    if divisions < 2 || divisions > 65536 || divisions % 2 != 0 {
+        return fault(
+            "integration.divisions",
+            format!("{divisions}; Simpson's rule needs an even number from 2 to 65536"),
+        );
+    }
+    finite("integration.tolerance", integration.tolerance)?;
+    if !(1e-12..1.0).contains(&integration.tolerance) {
+        return fault(
+            "integration.tolerance",
+            "must lie between 1e-12 and 1, 1 excluded",
+        );
+    }
+    finite("integration.softening", integration.softening)?;
+    if integration.softening < 0.0 {
+        return fault("integration.softening", "must not be negative");
+    }
+    Ok(())
+}
+
+fn check_curve(index: usize, curve: &Curve) -> Checked {
+    let key = |name| format!("curve[{index}].{name}");
+    for (k, point) in curve.control_points.iter().enumerate() {
+        vector(&format!("curve[{index}].control_points[{k}]"), *point)?;
+    }
+    light(&key, curve.coefficient, curve.color)?;
+    if let Some(series) = &curve.intensity {
+        if series.len() < 3 {
+            return fault(
+                key("intensity"),
+                format!(
+                    "needs at least 3 values, found {}; leave it out for 1 everywhere",
+                    series.len()
+                ),
+            );
+        }
+        for (k, value) in series.iter().enumerate() {
+            finite(&format!("curve[{index}].intensity[{k}]"), *value)?;
+        }
+    }
+    Ok(())
+}
+
+fn light(key: &impl Fn(&'static str) -> String, coefficient: f64, color: DVec3) -> Checked {
+    finite(&key("coefficient"), coefficient)?;
+    vector(&key("color"), color)
+}
+
+fn fault(key: impl Into<String>, message: impl Into<String>) -> Checked {
+    Err(SceneError::value(key, message))
+}
+
+fn finite(key: &str, value: f64) -> Checked {
+    if !value.is_finite() {
+        return fault(key, format!("{value} is not a finite number"));
+    }
+    if value.abs() > LARGEST {
+        return fault(
+            key,
+            format!("{value:e} is beyond {LARGEST:e}, what float32 devices can integrate"),
+        );
+    }
+    Ok(())
+}
+
+fn positive(key: &str, value: f64) -> Checked {
+    finite(key, value)?;
+    if value <= 0.0 {
+        return fault(key, format!("must be positive, found {value}"));
+    }
+    if value < SMALLEST {
+        return fault(
+            key,
+            format!("{value:e} is below {SMALLEST:e}, what float32 devices can integrate"),
+        );
+    }
+    Ok(())
+}
+
+fn vector(key: &str, value: DVec3) -> Checked {
+    value
+        .to_array()
+        .into_iter()
+        .try_for_each(|v| finite(key, v))
+}
+
+fn direction(key: &str, value: DVec3) -> Checked {
+    vector(key, value)?;
+    if value.length() < SMALLEST {
+        return fault(
+            key,
+            "the zero vector has no direction; give one such as [0.0, 0.0, 1.0]",
+        );
+    }
+    Ok(())
+}
