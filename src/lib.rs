@@ -11,6 +11,7 @@ pub mod ray;
 pub mod reference;
 mod renderer;
 pub mod scene;
+pub mod verify;
 
 pub use device::{Device, DeviceType, Devices};
 pub use error::{Error, Result, SceneError};

@@ -46,6 +46,14 @@ impl Renderer {
         Ok(Self { backend })
     }
 
+    /// Whether the device has a method.
+    pub fn supports(&self, method: Method) -> bool {
+        match &self.backend {
+            RendererBackend::OpenCl(_) => method == Method::Simpson,
+            RendererBackend::Reference => true,
+        }
+    }
+
     /// The scene's linear radiance, RGBA.
     ///
     /// # Errors

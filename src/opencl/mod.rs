@@ -13,6 +13,6 @@ mod source;
 pub use buffer::{DeviceBuffer, Uploaded};
 pub use compute::Compute;
 pub use discover::{Discovery, OpenClDevice, discover};
-pub use program::{BuildOptions, Program};
+pub use program::{Argument, BuildOptions, Program};
 pub use renderer::OpenClRenderer;
 pub use source::{FILES, resolve};

@@ -2,13 +2,14 @@
 
 use std::ffi::CString;
 
+use bytemuck::Pod;
 use opencl3::error_codes::ClError;
 use opencl3::event::Event;
 use opencl3::kernel::Kernel;
 use opencl3::program::Program as ClProgram;
 
 use super::failure::{code_name, failed};
-use super::{Compute, DeviceBuffer, source};
+use super::{Compute, DeviceBuffer, Uploaded, source};
 use crate::error::{Error, Result};
 use crate::pack::layout;
 use crate::reference::CORE_FLOOR;
@@ -95,9 +96,9 @@ impl Program {
 }
 
 fn compiler_flags(lanes: u32, extra: &str) -> String {
-    let sizes: String = layout::SIZES
+    let sizes: String = layout::STRUCTS
         .iter()
-        .map(|(name, size)| format!(" -D SIZEOF_{}={size}", name.to_uppercase()))
+        .map(|s| format!(" -D SIZEOF_{}={}", s.name.to_uppercase(), s.size))
         .collect();
     let environment = std::env::var(OPTIONS_VARIABLE).unwrap_or_default();
     format!(
@@ -107,39 +108,52 @@ fn compiler_flags(lanes: u32, extra: &str) -> String {
     .to_owned()
 }
 
-/// Sets arguments of a kernel one after the other.
-pub struct Arguments<'a> {
-    kernel: &'a Kernel,
-    device: &'a str,
-    index: u32,
-    result: Result<()>,
+/// What a kernel can be given: a device buffer, or one of the structs of [`layout`] by value.
+pub trait Argument {
+    /// Sets it.
+    #[doc(hidden)]
+    fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError>;
 }
 
-impl<'a> Arguments<'a> {
-    /// Begins with the first argument.
-    pub(super) fn new(kernel: &'a Kernel, compute: &'a Compute) -> Self {
-        Self {
-            kernel,
-            device: &compute.device.name,
-            index: 0,
-            result: Ok(()),
-        }
+impl<T: Pod> Argument for DeviceBuffer<T> {
+    fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError> {
+        // SAFETY: the driver checks the index, and that the kernel expects a buffer; the buffer is alive.
+        unsafe { kernel.set_arg(index, &self.handle()) }
     }
+}
 
-    /// A struct or number, passed by value; or the handle of a buffer.
-    pub(super) fn value<T>(mut self, value: &T) -> Self {
-        if self.result.is_ok() {
-            // SAFETY: the driver checks index and size against the kernel's own signature and copies the value.
-            self.result = unsafe { self.kernel.set_arg(self.index, value) }
-                .map_err(failed(self.device, "clSetKernelArg"));
-            self.index += 1;
-        }
-        self
+impl<T: Pod + PartialEq> Argument for Uploaded<T> {
+    fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError> {
+        // SAFETY: as for DeviceBuffer; before the first upload the handle is null, which a kernel may get but not read.
+        unsafe { kernel.set_arg(index, &self.handle()) }
     }
+}
 
-    pub(super) fn finish(self) -> Result<()> {
-        self.result
+macro_rules! by_value {
+    ($($type:ty),*) => {$(
+        impl Argument for $type {
+            fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError> {
+                // SAFETY: the driver checks index and size against the kernel's own signature and copies the value.
+                unsafe { kernel.set_arg(index, self) }
+            }
+        }
+    )*};
+}
+
+by_value!(layout::View, layout::Launch);
+
+/// Sets all arguments of a kernel, in order.
+pub(super) fn set_arguments(
+    compute: &Compute,
+    kernel: &Kernel,
+    arguments: &[&dyn Argument],
+) -> Result<()> {
+    for (index, argument) in arguments.iter().enumerate() {
+        argument
+            .set(kernel, index as u32)
+            .map_err(failed(&compute.device.name, "clSetKernelArg"))?;
     }
+    Ok(())
 }
 
 /// Enqueues `items` work-items in groups of `group`; the last group may be padded with work-items beyond `items`.
@@ -165,24 +179,20 @@ pub(super) fn enqueue(
 }
 
 impl Program {
-    /// Runs a kernel whose arguments are buffers only, over `items` work-items one by one, and waits for it. For tests
-    /// of single device functions.
+    /// Runs one of its kernels over `items` work-items one by one, and waits for it. For tests of single device
+    /// functions.
     ///
     /// # Errors
     /// [`Error::Device`] if an argument or the launch is refused.
-    pub fn run<T: bytemuck::Pod>(
+    pub fn run(
         &self,
         compute: &Compute,
         kernel: &str,
-        buffers: &[&DeviceBuffer<T>],
+        arguments: &[&dyn Argument],
         items: usize,
     ) -> Result<()> {
         let kernel = self.kernel(kernel)?;
-        let mut arguments = Arguments::new(&kernel, compute);
-        for buffer in buffers {
-            arguments = arguments.value(&buffer.handle());
-        }
-        arguments.finish()?;
+        set_arguments(compute, &kernel, arguments)?;
         enqueue(compute, &kernel, items, 1)?
             .wait()
             .map_err(failed(&compute.device.name, "clWaitForEvents"))

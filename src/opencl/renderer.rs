@@ -7,7 +7,7 @@ use opencl3::kernel::Kernel;
 
 use super::failure::failed;
 use super::launch::{Pace, Part, Work, launch, source_count};
-use super::program::{Arguments, BuildOptions, Program, enqueue};
+use super::program::{Argument, BuildOptions, Program, enqueue, set_arguments};
 use super::{Compute, DeviceBuffer, OpenClDevice, Uploaded};
 use crate::device::DeviceType;
 use crate::error::{Error, Result};
@@ -211,25 +211,25 @@ impl OpenClRenderer {
             Some(trace) if job.has_rays => trace,
             _ => &self.render,
         };
+        let Some(output) = &self.output else {
+            return Ok(());
+        };
         let lists = &self.lists;
-        let output = self
-            .output
-            .as_ref()
-            .map_or(std::ptr::null_mut(), DeviceBuffer::handle);
-        let mut arguments = Arguments::new(kernel, &self.compute)
-            .value(&job.view)
-            .value(launch)
-            .value(&lists.nodes.handle())
-            .value(&lists.spheres.handle())
-            .value(&lists.cylinders.handle())
-            .value(&lists.tori.handle())
-            .value(&lists.curves.handle())
-            .value(&lists.spline_pieces.handle())
-            .value(&output);
+        let mut arguments: Vec<&dyn Argument> = vec![
+            &job.view,
+            launch,
+            &lists.nodes,
+            &lists.spheres,
+            &lists.cylinders,
+            &lists.tori,
+            &lists.curves,
+            &lists.spline_pieces,
+            output,
+        ];
         if job.has_rays {
-            arguments = arguments.value(&lists.rays.handle());
+            arguments.push(&lists.rays);
         }
-        arguments.finish()?;
+        set_arguments(&self.compute, kernel, &arguments)?;
         let group = match self.device().device_type {
             DeviceType::Gpu => 64,
             _ => 16,

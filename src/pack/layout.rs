@@ -4,6 +4,17 @@
 
 use bytemuck::{Pod, Zeroable};
 
+/// Name, size and fields of a struct that crosses to the device.
+#[derive(Debug, Clone, Copy)]
+pub struct StructLayout {
+    /// Its name.
+    pub name: &'static str,
+    /// Its size, bytes.
+    pub size: usize,
+    /// Name, offset and size of every field, bytes.
+    pub fields: &'static [(&'static str, usize, usize)],
+}
+
 macro_rules! device_structs {
     ($($(#[$meta:meta])* $name:ident [$size:literal] { $($field:ident: $type:ty = $offset:literal),* $(,)? })*) => {
         $(
@@ -14,8 +25,12 @@ macro_rules! device_structs {
             const _: () = assert!(size_of::<$name>() == $size);
             $(const _: () = assert!(std::mem::offset_of!($name, $field) == $offset);)*
         )*
-        /// Name and size of every struct, as `cl/types.h` checks them.
-        pub const SIZES: &[(&str, usize)] = &[$((stringify!($name), $size)),*];
+        /// Every struct, as `cl/types.h` has it.
+        pub const STRUCTS: &[StructLayout] = &[$(StructLayout {
+            name: stringify!($name),
+            size: $size,
+            fields: &[$((stringify!($field), $offset, size_of::<$type>())),*],
+        }),*];
     };
 }
 

@@ -8,7 +8,7 @@ mod read;
 mod validate;
 
 use glam::DVec3;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A complete scene: camera, image size, the way of integrating, and the sources of light.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -181,7 +181,7 @@ impl Default for Integration {
 }
 
 /// A quadrature.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
     /// Composite Simpson rule with equal divisions (2015, eq. 23), beads at the core included.

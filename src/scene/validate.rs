@@ -112,7 +112,7 @@ fn check_size(size: ImageSize) -> Checked {
 
 fn check_integration(integration: &Integration) -> Checked {
     let divisions = integration.divisions;
-    if divisions < 2 || divisions > 65536 || divisions % 2 != 0 {
+    if !(2..=65536).contains(&divisions) || !divisions.is_multiple_of(2) {
         return fault(
             "integration.divisions",
             format!("{divisions}; Simpson's rule needs an even number from 2 to 65536"),

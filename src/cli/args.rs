@@ -1,0 +1,137 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use energywave::scene::{ImageSize, Method, Scene};
+
+/// Volumetric energy effects, integrated along every view ray on any OpenCL device.
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true, after_help = EXIT_CODES)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 success, 2 usage, 3 scene or input file, 4 no such device, \
+5 device failed or out of memory, 6 verification failed, 7 output, 130 interrupted";
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw a scene
+    Render(RenderArguments),
+    /// List the devices, which one is the default and why, and what is missing
+    Devices(DevicesArguments),
+    /// Check a device against rays whose integrals are known
+    Verify(VerifyArguments),
+}
+
+#[derive(Debug, Args)]
+pub struct RenderArguments {
+    /// Scene file, TOML or (.json) JSON
+    pub scene: PathBuf,
+    /// Image to write: .png (8-bit sRGB) or .exr (32-bit linear)
+    #[arg(short, long)]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+    /// No progress bar
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct DevicesArguments {
+    /// Print a JSON array
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct VerifyArguments {
+    /// JSON file of rays instead of the built-in ones
+    #[arg(long)]
+    pub rays: Option<PathBuf>,
+    /// Relative error aimed at by the exact method, and allowed to it
+    #[arg(long, default_value_t = 1e-3, value_parser = tolerance)]
+    pub tolerance: f64,
+    /// Print a JSON array
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+}
+
+#[derive(Debug, Args)]
+pub struct DeviceArgument {
+    /// Index, part of a name, gpu, cpu or reference [env: ENERGYWAVE_DEVICE] [default: best GPU, else CPU, else reference]
+    #[arg(long)]
+    pub device: Option<String>,
+}
+
+/// Options that replace values of the scene file.
+#[derive(Debug, Args)]
+pub struct Overrides {
+    /// Size of the image in pixels, such as 640x360
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<ImageSize>,
+    /// The quadrature
+    #[arg(long)]
+    pub method: Option<MethodName>,
+    /// Divisions of the Simpson rule, even, 2 to 65536
+    #[arg(long, value_parser = divisions)]
+    pub divisions: Option<u32>,
+    /// Relative error aimed at by the exact method
+    #[arg(long, value_parser = tolerance)]
+    pub tolerance: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum MethodName {
+    /// Composite Simpson rule with equal divisions, as in the paper of 2015
+    Simpson,
+    /// The integral itself
+    Exact,
+}
+
+impl Overrides {
+    /// Replaces what was typed.
+    pub fn apply(&self, scene: &mut Scene) {
+        let integration = &mut scene.integration;
+        scene.image = self.size.unwrap_or(scene.image);
+        integration.divisions = self.divisions.unwrap_or(integration.divisions);
+        integration.tolerance = self.tolerance.unwrap_or(integration.tolerance);
+        integration.method = match self.method {
+            Some(MethodName::Simpson) => Method::Simpson,
+            Some(MethodName::Exact) => Method::Exact,
+            None => integration.method,
+        };
+    }
+}
+
+fn size(text: &str) -> Result<ImageSize, String> {
+    let pixels = |text: &str| text.trim().parse().ok().filter(|pixels: &u32| *pixels > 0);
+    let sides = text
+        .split_once(['x', 'X'])
+        .map(|(w, h)| (pixels(w), pixels(h)));
+    match sides {
+        Some((Some(width), Some(height))) => Ok(ImageSize { width, height }),
+        _ => Err("a size is two positive numbers of pixels, such as 640x360".to_owned()),
+    }
+}
+
+fn divisions(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(divisions @ 2..=65536) if divisions % 2 == 0 => Ok(divisions),
+        _ => Err("Simpson's rule needs an even number from 2 to 65536".to_owned()),
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(tolerance) if (1e-12..1.0).contains(&tolerance) => Ok(tolerance),
+        _ => Err("a tolerance lies between 1e-12 and 1, such as 1e-3".to_owned()),
+    }
+}

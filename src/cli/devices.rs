@@ -1,0 +1,53 @@
+//! `energywave devices`: what there is to compute on.
+
+use energywave::{Device, DeviceType, Devices};
+
+use super::args::DevicesArguments;
+use super::{Outcome, note, print, print_json};
+
+pub fn run(arguments: &DevicesArguments) -> Outcome {
+    let devices = Devices::discover();
+    if arguments.json {
+        print_json(&devices)?;
+    } else {
+        print(&table(devices.as_slice()))?;
+        let best = devices.best();
+        note(&format!("default: {best}: {}", reason(&best)));
+    }
+    if let Some(problem) = devices.problem() {
+        note(&format!("OpenCL: {problem}"));
+    }
+    Ok(())
+}
+
+/// One row for each device.
+fn table(devices: &[Device]) -> String {
+    let mut text = format!(
+        "{:>5} {:<11} {:>5} {:>10} {:>5}  name, platform, version, driver\n",
+        "index", "type", "units", "memory", "lanes"
+    );
+    for device in devices {
+        text += &format!(
+            "{:>5} {:<11} {:>5} {:>6} MiB {:>5}  {}, {}, {}, {}\n",
+            device.index,
+            device.device_type,
+            device.compute_units,
+            device.memory_bytes >> 20,
+            device.lanes,
+            device.name,
+            device.platform,
+            device.version,
+            device.driver
+        );
+    }
+    text
+}
+
+fn reason(best: &Device) -> &'static str {
+    match best.device_type {
+        DeviceType::Gpu => "the GPU with the most compute units",
+        DeviceType::Cpu => "no GPU has an OpenCL driver, so the CPU through OpenCL",
+        DeviceType::Accelerator => "no GPU or CPU has an OpenCL driver",
+        DeviceType::Reference => "no device has an OpenCL driver",
+    }
+}

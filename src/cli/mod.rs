@@ -1,0 +1,109 @@
+//! The program: what was typed ([`args`]), then what is done, one file for each subcommand, then an exit code.
+
+mod args;
+mod devices;
+mod progress;
+mod render;
+mod verify;
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::Parser;
+use energywave::{Device, Devices, Error};
+
+use args::{Arguments, Command};
+
+/// How a subcommand can fail.
+enum Failure {
+    /// In the library.
+    Error(Error),
+    /// Some rays are off by more than the limit.
+    Verification(String),
+    /// Standard output cannot be written.
+    Stdout(io::Error),
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Error(error)
+    }
+}
+
+type Outcome = Result<(), Failure>;
+
+/// Runs the program.
+pub fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome = match arguments.command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Devices(arguments) => devices::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
+    };
+    let Err(failure) = outcome else {
+        return ExitCode::SUCCESS;
+    };
+    let (message, code) = match failure {
+        Failure::Error(error) => (error.to_string(), exit_code(&error)),
+        Failure::Verification(message) => (message, 6),
+        // The reader of a pipe may leave early; that is no failure of ours.
+        Failure::Stdout(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+            return ExitCode::SUCCESS;
+        }
+        Failure::Stdout(error) => (format!("standard output: cannot write: {error}"), 7),
+    };
+    // Nobody is left to tell if standard error is closed.
+    let _ = writeln!(io::stderr(), "error: {message}");
+    ExitCode::from(code)
+}
+
+/// The exit codes of README.md.
+fn exit_code(error: &Error) -> u8 {
+    match error {
+        Error::Unsupported(_) | Error::OutputFormat(_) => 2,
+        Error::Scene(_) | Error::Input { .. } => 3,
+        Error::NoSuchDevice(_) => 4,
+        Error::Output { .. } => 7,
+        Error::Interrupted => 130,
+        _ => 5, // the device failed, or there is too little memory
+    }
+}
+
+/// The device of `--device`, else of `ENERGYWAVE_DEVICE`, else the best; says on standard error which it is.
+fn choose_device(flag: Option<&str>) -> Result<Device, Failure> {
+    let devices = Devices::discover();
+    let variable = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_default();
+    let choice = flag.or(Some(variable.as_str()).filter(|word| !word.is_empty()));
+    let device = match choice {
+        Some(word) => devices.select(word)?,
+        None => devices.best(),
+    };
+    match devices.problem() {
+        Some(problem) if choice.is_none() => note(&format!("device: {device}: {problem}")),
+        _ => note(&format!("device: {device}")),
+    }
+    Ok(device)
+}
+
+/// One line on standard error.
+fn note(line: &str) {
+    // Nobody is left to tell if standard error is closed.
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// Data on standard output.
+fn print(data: &str) -> Outcome {
+    let mut stdout = io::stdout().lock();
+    stdout
+        .write_all(data.as_bytes())
+        .and_then(|()| stdout.flush())
+        .map_err(Failure::Stdout)
+}
+
+/// JSON on standard output.
+fn print_json(data: &impl serde::Serialize) -> Outcome {
+    match serde_json::to_string_pretty(data) {
+        Ok(text) => print(&format!("{text}\n")),
+        Err(error) => Err(Failure::Stdout(error.into())),
+    }
+}

@@ -1,0 +1,27 @@
+//! `energywave render`: a scene file to an image file.
+
+use energywave::image::{Output, OutputFormat};
+use energywave::{Error, Renderer, Scene};
+
+use super::args::RenderArguments;
+use super::progress::{Progress, catch_interrupts, was_interrupted};
+use super::{Outcome, choose_device};
+
+pub fn run(arguments: RenderArguments) -> Outcome {
+    OutputFormat::of(&arguments.output)?;
+    let mut scene = Scene::from_file(&arguments.scene)?;
+    arguments.overrides.apply(&mut scene);
+    scene.validate()?;
+    let device = choose_device(arguments.device.device.as_deref())?;
+    catch_interrupts();
+    let output = Output::create(&arguments.output)?;
+    let mut renderer = Renderer::new(&device)?;
+    let mut progress = Progress::new(arguments.quiet);
+    let image = renderer.render_with_progress(&scene, &mut |share| progress.report(share))?;
+    drop(progress);
+    if was_interrupted() {
+        return Err(Error::Interrupted.into());
+    }
+    output.write(&image, &scene.display)?;
+    Ok(())
+}

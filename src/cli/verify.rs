@@ -1,0 +1,113 @@
+//! `energywave verify`: known rays through a device.
+
+use std::collections::BTreeSet;
+
+use energywave::Renderer;
+use energywave::scene::Method;
+use energywave::verify::{KnownRay, Row, built_in_rays, rays_from_file, verify};
+
+use super::args::VerifyArguments;
+use super::{Failure, Outcome, choose_device, note, print, print_json};
+
+pub fn run(arguments: &VerifyArguments) -> Outcome {
+    let rays = match &arguments.rays {
+        Some(path) => rays_from_file(path)?,
+        None => built_in_rays()?,
+    };
+    let device = choose_device(arguments.device.device.as_deref())?;
+    let mut renderer = Renderer::new(&device)?;
+    name_unknown_kinds(&rays);
+    let mut rows = Vec::new();
+    for method in [Method::Simpson, Method::Exact] {
+        if renderer.supports(method) {
+            let tolerance = arguments.tolerance;
+            rows.extend(verify(
+                &mut renderer,
+                &device.name,
+                &rays,
+                method,
+                tolerance,
+            )?);
+        } else {
+            note(&format!(
+                "{}: method {} not built yet on OpenCL devices, no row",
+                device.name,
+                name(method)
+            ));
+        }
+    }
+    if arguments.json {
+        print_json(&rows)?;
+    } else {
+        print(&table(&rows))?;
+    }
+    judge(&rows)
+}
+
+fn name_unknown_kinds(rays: &[KnownRay]) {
+    let unknown: BTreeSet<&str> = rays
+        .iter()
+        .filter(|ray| ray.scene().is_none())
+        .map(|ray| ray.kind.as_str())
+        .collect();
+    for kind in unknown {
+        note(&format!("kind {kind}: not built yet, no row"));
+    }
+}
+
+fn table(rows: &[Row]) -> String {
+    let mut text = format!(
+        "{:>5} {:<15} {:<8} {:>14} {:>14} {:>9} {:>8}  device\n",
+        "index", "kind", "method", "expected", "value", "error", "limit"
+    );
+    for row in rows {
+        text += &format!(
+            "{:>5} {:<15} {:<8} {:>14.8e} {:>14.8e} {:>9.1e} {:>8.0e}  {}{}\n",
+            row.index,
+            row.kind,
+            name(row.method),
+            row.expected,
+            row.value,
+            row.relative_error,
+            row.limit,
+            row.device,
+            if row.passes() { "" } else { "  TOO FAR OFF" }
+        );
+    }
+    text
+}
+
+fn name(method: Method) -> &'static str {
+    match method {
+        Method::Simpson => "simpson",
+        Method::Exact => "exact",
+    }
+}
+
+/// Fails if a row is beyond its limit, or if there is none: nothing checked is not verified.
+fn judge(rows: &[Row]) -> Outcome {
+    let Some(worst) = rows
+        .iter()
+        .max_by(|a, b| (a.relative_error / a.limit).total_cmp(&(b.relative_error / b.limit)))
+    else {
+        return Err(Failure::Verification(
+            "no ray of a known kind: nothing was checked".to_owned(),
+        ));
+    };
+    let failed = rows.iter().filter(|row| !row.passes()).count();
+    let summary = format!(
+        "{} of {} values within their limits; the worst is ray {} ({}, {}): {:.1e} of {:.0e} allowed",
+        rows.len() - failed,
+        rows.len(),
+        worst.index,
+        worst.kind,
+        name(worst.method),
+        worst.relative_error,
+        worst.limit
+    );
+    if failed > 0 {
+        return Err(Failure::Verification(summary));
+    }
+    note(&summary);
+    Ok(())
+}
