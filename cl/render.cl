@@ -13,5 +13,5 @@ __kernel void render(const View view, const Launch launch, __global const Node *
     const Sources sources = {spheres, cylinders, tori, curves, spline_pieces};
     const Ray ray = pixel_ray(&view, launch.first + begin + LANE_NUMBERS);
     const float3v radiance = radiance_along(&ray, &sources, nodes, &launch);
-    store_pixels(image + launch.slot + begin, min(launch.count - begin, (uint)LANES), radiance, launch.accumulate);
+    store_pixels(image + launch.slot + begin, LAST_LANES(launch.count - begin), radiance, launch.accumulate);
 }

@@ -2,6 +2,11 @@
 #pragma once
 #include "lanes.h"
 
+// How many lanes have a pixel, when so many pixels are left.
+#ifndef LAST_LANES
+#define LAST_LANES(left) min(left, (uint)LANES)
+#endif
+
 // Writes (or adds to) pixels[0 .. count), count at most LANES.
 void store_pixels(__global float4 *const pixels, const uint count, const float3v radiance, const uint accumulate) {
 #if LANES == 1

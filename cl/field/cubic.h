@@ -2,11 +2,14 @@
 #pragma once
 #include "../lanes.h"
 
-// a^(-1/3) for a > 0: a first guess from the exponent, then Newton steps, each squaring the relative error.
+// a^(-1/3) for a > 0: a first guess from the exponent, good to 4 %, then Newton steps, each squaring the error.
+#ifndef CUBE_ROOT_STEPS
+#define CUBE_ROOT_STEPS 4
+#endif
 floatv inverse_cube_root(const floatv a) {
     const intv guess = 0x54a2fa8c - as_intv(a) / 3;
     floatv y = as_floatv(guess);
-    for (int step = 0; step < 4; ++step)
+    for (int step = 0; step < CUBE_ROOT_STEPS; ++step)
         y = y * fma(-a / 3.0f, y * y * y, splat(4.0f / 3.0f));
     return y;
 }

@@ -113,6 +113,6 @@ floatv nearest_on_curve(const curve_path *const path, const floatv s, floatv *co
 floatv curve_field(const curve_path *const path, const floatv s) {
     floatv distance2;
     const floatv x = nearest_on_curve(path, s, &distance2);
-    const floatv field = rsqrt(max(distance2 + path->softening2, path->floor2));
+    const floatv field = inverse_sqrt(max(distance2 + path->softening2, path->floor2));
     return path->spline_count ? field * spline_at(path->pieces, path->spline_count, x + 0.5f) : field;
 }

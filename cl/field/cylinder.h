@@ -21,5 +21,5 @@ cylinder_path cylinder_along(const Ray *const ray, const Sources *const sources,
 }
 
 floatv cylinder_field(const cylinder_path *const path, const floatv s) {
-    return rsqrt(max(quadratic_at(&path->distance2, s), path->floor2));
+    return inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2));
 }

@@ -17,5 +17,5 @@ sphere_path sphere_along(const Ray *const ray, const Sources *const sources, con
 }
 
 floatv sphere_field(const sphere_path *const path, const floatv s) {
-    return rsqrt(max(quadratic_at(&path->distance2, s), path->floor2));
+    return inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2));
 }

@@ -29,5 +29,5 @@ floatv torus_field(const torus_path *const path, const floatv s) {
     const floatv from_ring = sqrt(quadratic_at(&path->rho2, s)) - path->major_radius;
     const floatv height = fma(path->height_slope, s, path->height);
     const floatv distance2 = fma(from_ring, from_ring, fma(height, height, path->softening2));
-    return rsqrt(max(distance2, path->floor2));
+    return inverse_sqrt(max(distance2, path->floor2));
 }

@@ -48,10 +48,10 @@ impl ToneMap {
 
 /// The sRGB transfer function (IEC 61966-2-1), linear [0,1] to encoded [0,1].
 fn srgb_encode(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    match linear {
+        l if l <= 0.003_130_8 => 12.92 * l,
+        l if l < 1.0 => 1.055 * l.powf(1.0 / 2.4) - 0.055,
+        _ => 1.0,
     }
 }
 

@@ -1,0 +1,53 @@
+// Single device functions, for tests/device_functions.rs: each work-item takes LANES values of every list.
+#include "radiance.h"
+
+#if LANES == 1
+#define LOAD(list) (list)[get_global_id(0)]
+#define STORE(value, list) (list)[get_global_id(0)] = (value)
+#else
+#define LOAD(list) JOIN(vload, LANES)(get_global_id(0), list)
+#define STORE(value, list) JOIN(vstore, LANES)(value, get_global_id(0), list)
+#endif
+
+__kernel void cube_root(__global const float *a, __global float *result) {
+    STORE(inverse_cube_root(LOAD(a)), result);
+}
+
+__kernel void third(__global const float *x, __global float *result) {
+    STORE(cosine_of_third(LOAD(x)), result);
+}
+
+// The least and the greatest real root; both are the single root where there is one.
+__kernel void cubic(__global const float *ps, __global const float *hs, __global float *least,
+                    __global float *greatest) {
+    const floatv p = LOAD(ps), h = LOAD(hs);
+    const floatv discriminant = fma(h, h, p * p * p);
+    const floatv single = single_root(p, h, discriminant);
+    floatv low, high;
+    outer_roots(p, h, &low, &high);
+    STORE(select(low, single, discriminant > 0.0f), least);
+    STORE(select(high, single, discriminant > 0.0f), greatest);
+}
+
+__kernel void spline(__global const SplinePiece *pieces, __global const float *count, __global const float *ts,
+                     __global float *result) {
+    STORE(spline_at(pieces, (uint)count[0], LOAD(ts)), result);
+}
+
+// 1 / field at the point S + s (E - S), for the first source of a kind.
+#define FIELD_KERNEL(kind, Kind, list)                                                                                 \
+    __kernel void kind##_distance(__global const Kind *first, __global const float *ox, __global const float *oy,      \
+                                  __global const float *oz, __global const float *dx, __global const float *dy,        \
+                                  __global const float *dz, __global const float *ss, __global float *result) {        \
+        Sources sources = {0, 0, 0, 0, 0};                                                                             \
+        sources.list = first;                                                                                          \
+        const float3v origin = {LOAD(ox), LOAD(oy), LOAD(oz)}, span = {LOAD(dx), LOAD(dy), LOAD(dz)};                  \
+        const Ray ray = make_ray(origin, span, 0.0f);                                                                  \
+        const kind##_path path = kind##_along(&ray, &sources, 0);                                                      \
+        STORE(1.0f / kind##_field(&path, LOAD(ss)), result);                                                           \
+    }
+
+FIELD_KERNEL(sphere, Sphere, spheres)
+FIELD_KERNEL(cylinder, Cylinder, cylinders)
+FIELD_KERNEL(torus, Torus, tori)
+FIELD_KERNEL(curve, Curve, curves)

@@ -1,0 +1,132 @@
+//! What the integration tests share. Each test file uses a part of it.
+#![allow(dead_code)] // every test file is a crate of its own and uses its own part
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
+
+use energywave::image::{Difference, compare};
+use energywave::opencl::{Compute, OpenClDevice, discover};
+use energywave::scene::{Camera, Curve, Cylinder, Decay, ImageSize, Sphere, Torus};
+use energywave::{BuildOptions, Device, DeviceType, RadianceImage, Renderer, Scene};
+use glam::DVec3;
+
+/// Every lane width that the kernels can be built for.
+pub const LANE_WIDTHS: [u32; 4] = [1, 4, 8, 16];
+
+/// Spoils every field by 1 %: no comparison may pass with it.
+pub const BROKEN_FIELDS: &str = "-Dinverse_sqrt(x)=(1.01f/sqrt(x))";
+
+/// The OpenCL device under test: `ENERGYWAVE_DEVICE`, else a CPU. Fails loudly where there is none.
+pub fn device() -> Device {
+    let choice = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned());
+    let device = Device::select(&choice).unwrap_or_else(|error| {
+        panic!("these tests need an OpenCL device (Debian, Ubuntu: apt-get install pocl-opencl-icd): {error}")
+    });
+    assert_ne!(
+        device.device_type,
+        DeviceType::Reference,
+        "these tests check an OpenCL device, not the reference"
+    );
+    device
+}
+
+/// The same device for single kernels.
+pub fn compute() -> Compute {
+    let name = device().name;
+    let found: Vec<OpenClDevice> = discover().devices;
+    let device = found.iter().find(|d| d.name == name).unwrap();
+    Compute::new(device).unwrap()
+}
+
+pub fn options(lanes: u32, extra: &str) -> BuildOptions {
+    BuildOptions {
+        lanes: Some(lanes),
+        extra: extra.to_owned(),
+    }
+}
+
+pub fn renderer(lanes: u32, extra: &str) -> Renderer {
+    Renderer::with_options(&device(), &options(lanes, extra)).unwrap()
+}
+
+/// A camera 4 from the origin, as in the paper's figures, decay alpha = beta = 0.1, no sources.
+pub fn empty_scene(width: u32, height: u32) -> Scene {
+    let mut scene = Scene::new(Camera::new(DVec3::new(0.3, -3.5, 2.0), DVec3::ZERO));
+    scene.image = ImageSize { width, height };
+    scene.decay = Some(Decay {
+        alpha: 0.1,
+        beta: 0.1,
+    });
+    scene
+}
+
+pub fn sphere(center: [f64; 3], coefficient: f64) -> Sphere {
+    Sphere {
+        center: center.into(),
+        coefficient,
+        color: DVec3::new(1.0, 0.5, 0.25),
+    }
+}
+
+pub fn cylinder(point: [f64; 3], direction: [f64; 3]) -> Cylinder {
+    Cylinder {
+        point: point.into(),
+        direction: direction.into(),
+        coefficient: 2.0,
+        color: DVec3::new(0.3, 0.6, 0.9),
+    }
+}
+
+pub fn torus(center: [f64; 3], axis: [f64; 3], major_radius: f64) -> Torus {
+    Torus {
+        center: center.into(),
+        axis: axis.into(),
+        major_radius,
+        coefficient: 5.1,
+        color: DVec3::new(0.2, 0.4, 1.0),
+    }
+}
+
+pub fn curve(points: [[f64; 3]; 3], intensity: Option<Vec<f64>>) -> Curve {
+    Curve {
+        control_points: points.map(DVec3::from),
+        coefficient: 5.0,
+        color: DVec3::new(0.7, 0.2, 0.5),
+        intensity,
+    }
+}
+
+/// Curves of every shape: bent, folded, straight, straight with uneven speed, a point, nearly straight.
+pub const CURVE_SHAPES: [[[f64; 3]; 3]; 7] = [
+    [[-1.2, -0.2, 0.1], [-0.6, 1.1, -0.3], [0.0, 0.0, 0.1]],
+    [[0.0, 0.0, 0.0], [1.5, 0.6, 0.3], [0.5, 0.2, 0.1]],
+    [[-1.0, 0.0, 0.5], [0.0, 0.0, 0.5], [1.0, 0.0, 0.5]],
+    [[-1.0, 0.0, 0.5], [0.7, 0.0, 0.5], [1.0, 0.0, 0.5]],
+    [[0.3, 0.2, 0.1], [0.3, 0.2, 0.1], [0.3, 0.2, 0.1]],
+    [[-1.0, 0.0, 0.5], [0.0, 0.0003, 0.5], [1.0, 0.0, 0.5]],
+    [[0.4, 0.1, 0.0], [-0.9, 0.8, 1.0], [0.4, 0.1, 0.0]],
+];
+
+/// A scene with sources of every kind.
+pub fn full_scene(width: u32, height: u32) -> Scene {
+    let mut scene = empty_scene(width, height);
+    scene.spheres.push(sphere([0.4, 0.3, 0.5], 1.5));
+    scene.spheres.push(sphere([-0.7, 0.1, -0.4], 0.5));
+    scene
+        .cylinders
+        .push(cylinder([0.0, 0.6, 0.2], [1.0, 0.2, 0.1]));
+    scene
+        .tori
+        .push(torus([0.1, 0.0, 0.0], [0.1, 0.2, 2.0], 0.9));
+    scene
+        .tori
+        .push(torus([0.0, 0.2, 0.1], [1.0, 0.2, 0.0], 0.4));
+    let series = vec![1.0, 0.2, 0.6, 1.0];
+    scene.curves.push(curve(CURVE_SHAPES[0], Some(series)));
+    for shape in &CURVE_SHAPES[1..] {
+        scene.curves.push(curve(*shape, None));
+    }
+    scene
+}
+
+pub fn difference(image: &RadianceImage, reference: &RadianceImage) -> Difference {
+    compare(image, reference).expect("images of one size")
+}

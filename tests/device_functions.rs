@@ -1,0 +1,318 @@
+//! Device functions one at a time against float64, on every lane width.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+
+use common::LANE_WIDTHS;
+use energywave::Scene;
+use energywave::opencl::{Argument, Compute, DeviceBuffer, Program};
+use energywave::pack::Sources;
+use energywave::ray::Ray;
+use energywave::reference::{self, b_spline};
+use glam::DVec3;
+
+const FUNCTIONS: &str = include_str!("cl/functions.cl");
+
+/// Four Newton steps leave a few roundings of float32.
+const CUBE_ROOT_ERROR: f64 = 5e-7;
+
+/// The minimax polynomial's own error, 1.6e-7, and the rounding of its terms.
+const THIRD_ERROR: f64 = 4e-7;
+
+/// Relative to the scale of the roots: roundings of p and h, which near a double root move it by their square root.
+const ROOT_ERROR: f64 = 2e-6;
+const DOUBLE_ROOT_ERROR: f64 = 2e-3;
+
+/// Splines of weights up to 1: a few roundings.
+const SPLINE_ERROR: f64 = 4e-7;
+
+/// World units, for coordinates up to 10: a dozen roundings of 6e-7 each.
+const DISTANCE_ERROR: f64 = 4e-6;
+
+struct Bench {
+    compute: Compute,
+    program: Program,
+}
+
+impl Bench {
+    fn new(lanes: u32, extra: &str) -> Self {
+        let compute = common::compute();
+        let options = common::options(lanes, extra);
+        let program = Program::build_text(&compute, "functions.cl", FUNCTIONS, &options).unwrap();
+        Self { compute, program }
+    }
+
+    fn upload(&self, values: &[f32]) -> DeviceBuffer<f32> {
+        let mut buffer = DeviceBuffer::new(&self.compute, "values", values.len()).unwrap();
+        buffer.write(&self.compute, values).unwrap();
+        buffer
+    }
+
+    /// Runs a kernel on lists of 16 n values; the last `results` arguments are written.
+    fn run(&self, kernel: &str, inputs: &[&[f32]], count: usize, results: usize) -> Vec<Vec<f32>> {
+        assert_eq!(count % 16, 0);
+        let uploaded: Vec<_> = inputs.iter().map(|values| self.upload(values)).collect();
+        let outputs: Vec<_> = (0..results)
+            .map(|_| self.upload(&vec![f32::NAN; count]))
+            .collect();
+        let arguments: Vec<&dyn Argument> = uploaded
+            .iter()
+            .chain(&outputs)
+            .map(|buffer| buffer as &dyn Argument)
+            .collect();
+        let items = count / self.program.lanes as usize;
+        self.program
+            .run(&self.compute, kernel, &arguments, items)
+            .unwrap();
+        let read = |buffer: &DeviceBuffer<f32>| {
+            let mut values = vec![0.0; count];
+            buffer.read(&self.compute, &mut values).unwrap();
+            values
+        };
+        outputs.iter().map(read).collect()
+    }
+}
+
+/// Worst relative error of the inverse cube root over 60 powers of ten.
+fn cube_root_error(bench: &Bench) -> f64 {
+    let values: Vec<f32> = (0..960)
+        .map(|i| 10_f32.powf(i as f32 / 16.0 - 30.0))
+        .collect();
+    let found = &bench.run("cube_root", &[&values], values.len(), 1)[0];
+    let error = |(a, y): (&f32, &f32)| (f64::from(*y) * f64::from(*a).cbrt() - 1.0).abs();
+    values.iter().zip(found).map(error).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_inverse_cube_root_is_within_a_few_roundings() {
+    for lanes in LANE_WIDTHS {
+        let error = cube_root_error(&Bench::new(lanes, ""));
+        assert!(error < CUBE_ROOT_ERROR, "{lanes} lanes: {error:e}");
+    }
+    let spoiled = cube_root_error(&Bench::new(8, "-DCUBE_ROOT_STEPS=2"));
+    assert!(
+        spoiled > CUBE_ROOT_ERROR,
+        "the spoiled build passed: {spoiled:e}"
+    );
+}
+
+#[test]
+fn the_cosine_of_a_third_of_the_angle_is_within_its_polynomials_error() {
+    let values: Vec<f32> = (0..1600)
+        .map(|i| (i as f32 / 799.5 - 1.0).clamp(-1.0, 1.0))
+        .collect();
+    for lanes in LANE_WIDTHS {
+        let found = &Bench::new(lanes, "").run("third", &[&values], values.len(), 1)[0];
+        for (x, cosine) in values.iter().zip(found) {
+            let expected = (f64::from(*x).acos() / 3.0).cos();
+            let error = (f64::from(*cosine) - expected).abs();
+            assert!(
+                error < THIRD_ERROR,
+                "{lanes} lanes, x = {x}: {cosine}, not {expected}"
+            );
+        }
+    }
+}
+
+/// Least and greatest real root of u^3 + 3 p u + 2 h, by bisection between bounds of all roots.
+fn roots(p: f64, h: f64) -> (f64, f64) {
+    let cubic = |u: f64| (u * u + 3.0 * p) * u + 2.0 * h;
+    let bound = 1.0 + (3.0 * p).abs() + (2.0 * h).abs();
+    let turn = (-p).max(0.0).sqrt();
+    let bisect = |mut low: f64, mut high: f64| {
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if cubic(middle) <= 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    };
+    if h * h + p * p * p > 0.0 {
+        let root = bisect(-bound, bound);
+        (root, root)
+    } else {
+        (bisect(-bound, -turn), bisect(turn, bound))
+    }
+}
+
+#[test]
+fn the_cubics_outer_roots_match_bisection() {
+    let mut random = fastrand::Rng::with_seed(3);
+    let mut value = || {
+        let magnitude = 10_f64.powf(6.0 * random.f64() - 3.0);
+        (if random.bool() { magnitude } else { -magnitude }) as f32
+    };
+    let mut ps: Vec<f32> = (0..960).map(|_| value()).collect();
+    let mut hs: Vec<f32> = (0..960).map(|_| value()).collect();
+    // Triple root, double roots on either side, h = 0.
+    ps.extend([
+        0.0, -1.0, -1.0, -4.0, 1.0, -1.0, 1e-6, -1e-6, 0.0, 0.0, 3.0, 3.0, -2.0, -2.0, 1e6, 1e6,
+    ]);
+    hs.extend([
+        0.0, 1.0, -1.0, 8.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1e-5, -1e-5, 1e-5, -1e-5, 1.0, -1.0,
+    ]);
+    for lanes in LANE_WIDTHS {
+        let found = Bench::new(lanes, "").run("cubic", &[&ps, &hs], ps.len(), 2);
+        for (i, (p, h)) in ps.iter().zip(&hs).enumerate() {
+            let (p, h) = (f64::from(*p), f64::from(*h));
+            let (least, greatest) = roots(p, h);
+            let distance_from_double =
+                (h * h + p * p * p).abs() / (h * h + p.abs().powi(3) + 1e-30);
+            let scale = p
+                .abs()
+                .sqrt()
+                .max(h.abs().cbrt())
+                .max(least.abs())
+                .max(1e-6);
+            let limit = if distance_from_double < 1e-4 {
+                DOUBLE_ROOT_ERROR
+            } else {
+                ROOT_ERROR
+            };
+            let allowed = limit * scale / distance_from_double.sqrt().clamp(0.1, 1.0);
+            let (low, high) = (f64::from(found[0][i]), f64::from(found[1][i]));
+            // At a double root float32 may see one root for two: then either outer root is an answer.
+            let is_either = |u: f64| (u - least).abs().min((u - greatest).abs()) <= allowed;
+            assert!(
+                is_either(low) && is_either(high),
+                "{lanes} lanes, p {p} h {h}: {low} {high}, not {least} {greatest}"
+            );
+            if distance_from_double > 1e-4 {
+                assert!(
+                    (low - least).abs() <= allowed && (high - greatest).abs() <= allowed,
+                    "{lanes} lanes, p {p} h {h}: {low} {high}, not {least} {greatest}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_spline_matches_de_boor() {
+    let ts: Vec<f32> = (0..160).map(|i| i as f32 / 159.0).collect();
+    for lanes in LANE_WIDTHS {
+        let bench = Bench::new(lanes, "");
+        for series in [
+            vec![1.0, 0.6, 0.2, 0.4, 0.8, 0.6, 1.0],
+            vec![0.1, 0.9, 0.5],
+            vec![0.0; 4],
+        ] {
+            let mut scene = common::empty_scene(1, 1);
+            scene
+                .curves
+                .push(common::curve(common::CURVE_SHAPES[0], Some(series.clone())));
+            let pieces = Sources::new(&scene, DVec3::ZERO, 1.0).spline_pieces;
+            let count = [pieces.len() as f32];
+            let inputs = [bytemuck::cast_slice(&pieces), &count, &ts];
+            let found = &bench.run("spline", &inputs, ts.len(), 1)[0];
+            for (t, value) in ts.iter().zip(found) {
+                let expected = b_spline(&series, f64::from(*t));
+                let error = (f64::from(*value) - expected).abs();
+                assert!(
+                    error < SPLINE_ERROR,
+                    "{lanes} lanes, {series:?} at {t}: {value}, not {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// Worst error of the distance to a scene's only source, over random points of random rays; world units.
+fn distance_error(bench: &Bench, kernel: &str, scene: &Scene, seed: u64) -> f64 {
+    const COUNT: usize = 320;
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut point = |reach: f64| DVec3::from([0; 3].map(|_| reach * (2.0 * random.f64() - 1.0)));
+    let rays: Vec<Ray> = (0..COUNT)
+        .map(|_| Ray::between(point(3.0), point(6.0)))
+        .collect();
+    let ss: Vec<f32> = (0..COUNT).map(|_| random.f32()).collect();
+    let packed = Sources::new(scene, DVec3::ZERO, 1.0);
+    let source: &[f32] = match kernel {
+        "sphere_distance" => bytemuck::cast_slice(&packed.spheres),
+        "cylinder_distance" => bytemuck::cast_slice(&packed.cylinders),
+        "torus_distance" => bytemuck::cast_slice(&packed.tori),
+        _ => bytemuck::cast_slice(&packed.curves),
+    };
+    let column = |part: fn(&Ray) -> f64| rays.iter().map(|r| part(r) as f32).collect::<Vec<f32>>();
+    let inputs = [
+        column(|r| r.origin.x),
+        column(|r| r.origin.y),
+        column(|r| r.origin.z),
+        column(|r| r.span.x),
+        column(|r| r.span.y),
+        column(|r| r.span.z),
+        ss.clone(),
+    ];
+    let mut lists = vec![source];
+    lists.extend(inputs.iter().map(Vec::as_slice));
+    let found = &bench.run(kernel, &lists, COUNT, 1)[0];
+    let field = &reference::sources(scene)[0].field;
+    let error = |i: usize| {
+        let expected = field.sample(rays[i].at(f64::from(ss[i]))).distance2.sqrt();
+        let error = (f64::from(found[i]) - expected).abs();
+        if error.is_nan() { f64::INFINITY } else { error }
+    };
+    (0..COUNT).map(error).fold(0.0, f64::max)
+}
+
+/// A kernel of tests/cl/functions.cl and scenes of one source for it.
+fn distance_cases() -> Vec<(&'static str, Scene)> {
+    let empty = || common::empty_scene(1, 1);
+    let mut cases = Vec::new();
+    let mut scene = empty();
+    scene.spheres.push(common::sphere([0.4, 0.3, 0.5], 1.0));
+    cases.push(("sphere_distance", scene));
+    for direction in [[1.0, 0.2, 0.1], [0.0, 0.0, -3.0]] {
+        let mut scene = empty();
+        scene
+            .cylinders
+            .push(common::cylinder([0.1, 0.6, 0.2], direction));
+        cases.push(("cylinder_distance", scene));
+    }
+    for (axis, radius) in [
+        ([0.0, 0.0, 1.0], 0.9),
+        ([1.0, -2.0, 0.3], 3.0),
+        ([0.3, 0.2, 0.1], 0.01),
+    ] {
+        let mut scene = empty();
+        scene
+            .tori
+            .push(common::torus([0.2, -0.3, 0.1], axis, radius));
+        cases.push(("torus_distance", scene));
+    }
+    for shape in common::CURVE_SHAPES {
+        let mut scene = empty();
+        scene.curves.push(common::curve(shape, None));
+        cases.push(("curve_distance", scene));
+    }
+    cases
+}
+
+#[test]
+fn the_distance_to_every_core_matches_float64() {
+    for lanes in LANE_WIDTHS {
+        let bench = Bench::new(lanes, "");
+        for (seed, (kernel, scene)) in distance_cases().iter().enumerate() {
+            let error = distance_error(&bench, kernel, scene, seed as u64);
+            assert!(
+                error < DISTANCE_ERROR,
+                "{lanes} lanes, {kernel}, seed {seed}: {error:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_spoiled_field_is_noticed_by_every_distance() {
+    let bench = Bench::new(8, common::BROKEN_FIELDS);
+    for (seed, (kernel, scene)) in distance_cases().iter().enumerate() {
+        let error = distance_error(&bench, kernel, scene, seed as u64);
+        assert!(
+            error > DISTANCE_ERROR,
+            "{kernel}, seed {seed}: the spoiled build passed: {error:e}"
+        );
+    }
+}

@@ -1,0 +1,86 @@
+//! The device structs agree between host and device: sizes in every build (`cl/types.h`), offsets at compile time
+//! (`src/pack/layout.rs`), and here every field by its name.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use energywave::opencl::{DeviceBuffer, Program};
+use energywave::pack::layout::{STRUCTS, StructLayout};
+
+/// A kernel that copies every 32-bit word of every field, reached by the field's name, in the order of the host's list.
+fn copy_fields(layout: &StructLayout) -> String {
+    let copies: String = layout
+        .fields
+        .iter()
+        .map(|(field, _, size)| {
+            format!(
+                "    for (uint word = 0; word < {}; ++word)\n        \
+                 words[next++] = ((__global const uint *)&record->{field})[word];\n",
+                size / 4
+            )
+        })
+        .collect();
+    format!(
+        "#include \"types.h\"\n__kernel void copy_fields(__global const {} *record, __global uint *words) {{\n    \
+         uint next = 0;\n{copies}}}\n",
+        layout.name
+    )
+}
+
+/// The words that the device finds in a record whose word k is k + 1.
+fn words_by_name(layout: &StructLayout) -> Vec<u32> {
+    let compute = common::compute();
+    let count = layout.size / 4;
+    let record: Vec<u32> = (1..=count as u32).collect();
+    let mut input = DeviceBuffer::new(&compute, "record", count).unwrap();
+    input.write(&compute, &record).unwrap();
+    let mut output = DeviceBuffer::<u32>::new(&compute, "words", count).unwrap();
+    output.write(&compute, &vec![0; count]).unwrap();
+    let text = copy_fields(layout);
+    let program =
+        Program::build_text(&compute, "copy_fields.cl", &text, &common::options(1, "")).unwrap();
+    program
+        .run(&compute, "copy_fields", &[&input, &output], 1)
+        .unwrap();
+    let mut words = vec![0; count];
+    output.read(&compute, &mut words).unwrap();
+    words
+}
+
+#[test]
+fn the_device_finds_every_field_where_the_host_put_it() {
+    for layout in STRUCTS {
+        let expected: Vec<u32> = (1..=layout.size as u32 / 4).collect();
+        assert_eq!(words_by_name(layout), expected, "{}", layout.name);
+    }
+}
+
+#[test]
+fn two_swapped_fields_are_noticed() {
+    let torus = STRUCTS.iter().find(|s| s.name == "Torus").unwrap();
+    let swapped: &[_] = &[
+        torus.fields[1],
+        torus.fields[0],
+        torus.fields[2],
+        torus.fields[3],
+        torus.fields[4],
+        torus.fields[5],
+        torus.fields[6],
+    ];
+    let wrong = StructLayout {
+        fields: Box::leak(swapped.to_vec().into_boxed_slice()),
+        ..*torus
+    };
+    let expected: Vec<u32> = (1..=torus.size as u32 / 4).collect();
+    assert_ne!(words_by_name(&wrong), expected);
+}
+
+#[test]
+fn a_struct_of_another_size_stops_the_build() {
+    let compute = common::compute();
+    let options = common::options(1, "-DSIZEOF_TORUS=60");
+    let error = Program::build(&compute, &["render.cl"], &options).unwrap_err();
+    let message = error.to_string();
+    assert!(message.contains("Torus_has_the_size"), "{message}");
+    assert!(message.contains("cl/types.h"), "{message}");
+}

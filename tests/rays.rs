@@ -1,0 +1,103 @@
+//! The reference rays: hard rays with integrals known to nine digits.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use energywave::ray::Ray;
+use energywave::reference::{self, Integrand};
+use energywave::scene::Method;
+use energywave::verify::{KnownRay, Row, built_in_rays, verify};
+use energywave::{Device, Renderer};
+
+/// The reference aims at 1e-10; the file's own values are good to 1e-9.
+const REFERENCE_ERROR: f64 = 1e-8;
+
+/// float64 sums of the same 201 terms.
+const SIMPSON_ERROR: f64 = 1e-11;
+
+/// Rays of the kinds that this version draws: sphere, cylinder, torus and four kinds of curve.
+const KNOWN: usize = 7 * 16;
+
+fn through(renderer: &mut Renderer, method: Method) -> Vec<Row> {
+    let rays = built_in_rays().unwrap();
+    assert_eq!(rays.len(), 160);
+    let rows = verify(renderer, "device", &rays, method, 1e-3).unwrap();
+    assert_eq!(rows.len(), KNOWN);
+    rows
+}
+
+#[test]
+fn the_reference_meets_the_exact_integrals() {
+    let mut reference = Renderer::new(&Device::select("reference").unwrap()).unwrap();
+    for row in through(&mut reference, Method::Exact) {
+        assert!(row.relative_error < REFERENCE_ERROR, "{row:?}");
+    }
+}
+
+#[test]
+fn the_references_simpson_meets_the_known_sums() {
+    let mut reference = Renderer::new(&Device::select("reference").unwrap()).unwrap();
+    for row in through(&mut reference, Method::Simpson) {
+        assert!(row.relative_error < SIMPSON_ERROR, "{row:?}");
+    }
+}
+
+#[test]
+fn the_reference_notices_a_ray_moved_by_a_millionth() {
+    let is_off = |known: &KnownRay| {
+        let scene = known.scene()?;
+        let integrand = Integrand {
+            decay: scene.decay,
+            softening: 0.0,
+        };
+        let field = &reference::sources(&scene)[0].field;
+        let moved = Ray::between(known.start + 1e-6, known.end + 1e-6);
+        let value = reference::exact(field, &moved, &integrand);
+        Some((value / known.exact - 1.0).abs() > REFERENCE_ERROR)
+    };
+    let rays = built_in_rays().unwrap();
+    let off = rays.iter().filter_map(is_off).filter(|off| *off).count();
+    assert!(
+        off > KNOWN * 9 / 10,
+        "only {off} of {KNOWN} moved rays are noticed"
+    );
+}
+
+#[test]
+fn the_device_meets_the_known_simpson_sums_on_every_lane_width() {
+    for lanes in common::LANE_WIDTHS {
+        for row in through(&mut common::renderer(lanes, ""), Method::Simpson) {
+            assert!(row.passes(), "{lanes} lanes: {row:?}");
+        }
+    }
+}
+
+#[test]
+fn a_spoiled_field_fails_on_every_ray() {
+    for row in through(
+        &mut common::renderer(8, common::BROKEN_FIELDS),
+        Method::Simpson,
+    ) {
+        assert!(!row.passes(), "the spoiled build passed: {row:?}");
+    }
+}
+
+#[test]
+fn many_rays_of_one_launch_are_as_good_as_one_by_one() {
+    let rays = built_in_rays().unwrap();
+    let scene = rays[32].scene().unwrap();
+    let all: Vec<Ray> = rays.iter().map(KnownRay::ray).collect();
+    for lanes in common::LANE_WIDTHS {
+        let mut renderer = common::renderer(lanes, "");
+        let together = renderer.trace(&scene, &all).unwrap();
+        let mut reference = Renderer::new(&Device::select("reference").unwrap()).unwrap();
+        let expected = reference.trace(&scene, &all).unwrap();
+        for (i, (found, expected)) in together.iter().zip(&expected).enumerate() {
+            let error = (found[0] / expected[0] - 1.0).abs();
+            assert!(
+                error < 1e-4 || i == 32 && error < 1e-3,
+                "{lanes} lanes, ray {i}: {error:e}"
+            );
+        }
+    }
+}
