@@ -75,13 +75,13 @@ pub struct DeviceArgument {
 #[derive(Debug, Args)]
 pub struct Overrides {
     /// Size of the image in pixels, such as 640x360
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<ImageSize>,
     /// The quadrature
     #[arg(long)]
     pub method: Option<MethodName>,
     /// Divisions of the Simpson rule, even, 2 to 65536
-    #[arg(long, value_parser = divisions)]
+    #[arg(long, value_parser = divisions, allow_hyphen_values = true)]
     pub divisions: Option<u32>,
     /// Relative error aimed at by the exact method
     #[arg(long, value_parser = tolerance)]

@@ -77,7 +77,8 @@ impl Program {
         let id = device.handle.id();
         program.build(&[id], &flags).map_err(|ClError(code)| {
             let log = program.get_build_log(id).unwrap_or_default();
-            refused(format!("{} with {flags}", code_name(code)), log)
+            let chosen = format!("LANES={lanes} {}", options.extra);
+            refused(format!("{}, {}", code_name(code), chosen.trim()), log)
         })?;
         Ok(Self {
             program,

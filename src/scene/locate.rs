@@ -35,11 +35,13 @@ impl KeyMap {
             .map(|entry| entry.value.start)
     }
 
-    /// The innermost key that encloses a byte offset, with its value or by its name.
-    pub(super) fn path_at(&self, offset: usize) -> Option<&str> {
+    /// The innermost key that encloses a byte range, with its value or by its name.
+    pub(super) fn path_at(&self, range: &Range<usize>) -> Option<&str> {
+        let encloses =
+            |outer: &Range<usize>| outer.contains(&range.start) && range.end <= outer.end;
         self.entries
             .iter()
-            .filter(|entry| entry.value.contains(&offset) || entry.key.contains(&offset))
+            .filter(|entry| encloses(&entry.value) || encloses(&entry.key))
             .max_by_key(|entry| entry.path.len())
             .map(|entry| entry.path.as_str())
     }

@@ -69,11 +69,13 @@ impl Scene {
 #[serde(deny_unknown_fields)]
 pub struct Camera {
     /// Position of the eye.
+    #[serde(deserialize_with = "read::vector")]
     pub eye: DVec3,
     /// The point looked at, in the middle of the image.
+    #[serde(deserialize_with = "read::vector")]
     pub target: DVec3,
     /// The direction that is up in the image; need not be perpendicular to the view.
-    #[serde(default = "plus_z")]
+    #[serde(default = "plus_z", deserialize_with = "read::vector")]
     pub up: DVec3,
     /// Full vertical angle of view, degrees.
     #[serde(default = "default_fov_y")]
@@ -238,10 +240,12 @@ pub enum ToneMap {
 #[serde(default, deny_unknown_fields)]
 pub struct Sphere {
     /// The point, M.
+    #[serde(deserialize_with = "read::vector")]
     pub center: DVec3,
     /// The paper's energy coefficient.
     pub coefficient: f64,
     /// Linear RGB.
+    #[serde(deserialize_with = "read::vector")]
     pub color: DVec3,
 }
 
@@ -260,15 +264,16 @@ impl Default for Sphere {
 #[serde(deny_unknown_fields)]
 pub struct Cylinder {
     /// A point of the line.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "read::vector")]
     pub point: DVec3,
     /// Direction of the line, of any length but zero.
+    #[serde(deserialize_with = "read::vector")]
     pub direction: DVec3,
     /// The paper's energy coefficient.
     #[serde(default = "one")]
     pub coefficient: f64,
     /// Linear RGB.
-    #[serde(default = "white")]
+    #[serde(default = "white", deserialize_with = "read::vector")]
     pub color: DVec3,
 }
 
@@ -277,10 +282,10 @@ pub struct Cylinder {
 #[serde(deny_unknown_fields)]
 pub struct Torus {
     /// Middle of the ring.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "read::vector")]
     pub center: DVec3,
     /// Normal of the ring's plane, of any length but zero.
-    #[serde(default = "plus_z")]
+    #[serde(default = "plus_z", deserialize_with = "read::vector")]
     pub axis: DVec3,
     /// Radius of the circle, positive.
     pub major_radius: f64,
@@ -288,7 +293,7 @@ pub struct Torus {
     #[serde(default = "one")]
     pub coefficient: f64,
     /// Linear RGB.
-    #[serde(default = "white")]
+    #[serde(default = "white", deserialize_with = "read::vector")]
     pub color: DVec3,
 }
 
@@ -304,7 +309,7 @@ pub struct Curve {
     #[serde(default = "one")]
     pub coefficient: f64,
     /// Linear RGB.
-    #[serde(default = "white")]
+    #[serde(default = "white", deserialize_with = "read::vector")]
     pub color: DVec3,
     /// The local-intensity series W: weights of a clamped uniform quadratic B-spline over the curve's parameter, at
     /// least 3; `None`: 1 everywhere.

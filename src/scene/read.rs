@@ -51,13 +51,18 @@ impl Scene {
     pub fn from_json(text: &str) -> Result<Self> {
         let mut reader = serde_json::Deserializer::from_str(text);
         let scene: Self = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-            let key = error.path().to_string();
+            let key = match error.path().to_string() {
+                unknown if unknown == "." || unknown == "?" => String::new(),
+                key => key,
+            };
             let inner = error.inner();
+            let message = plain_words(without_position(&inner.to_string()));
+            let (key, message) = name_missing(key, message);
             SceneError {
                 path: None,
                 position: (inner.line() > 0).then(|| (inner.line(), inner.column())),
-                key: if key == "." { String::new() } else { key },
-                message: plain_words(without_position(&inner.to_string())),
+                key,
+                message,
             }
         })?;
         reader.end().map_err(|error| SceneError {
@@ -77,19 +82,30 @@ fn read_text(path: &Path) -> Result<String> {
         reason,
     };
     let bytes = std::fs::read(path).map_err(|error| fail(format!("cannot read: {error}")))?;
-    String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        fail(format!(
-            "not a text file: byte {at} is no UTF-8; a scene is TOML or JSON text"
-        ))
-    })
+    let no_text = match String::from_utf8(bytes) {
+        Ok(text) => match text.find('\0') {
+            None => return Ok(text),
+            Some(at) => at,
+        },
+        Err(error) => error.utf8_error().valid_up_to(),
+    };
+    Err(fail(format!(
+        "not a text file (byte {no_text}); a scene is TOML or JSON in UTF-8"
+    )))
 }
 
 /// A fault of syntax, type or key name, as the TOML reader found it.
 fn toml_fault(text: &str, error: &toml::de::Error) -> SceneError {
-    let offset = error.span().map_or(0, |span| span.start);
-    let key = KeyMap::new(text).path_at(offset).unwrap_or("").to_owned();
-    let mut message = plain_words(error.message());
+    let span = error.span().unwrap_or(0..0);
+    let offset = span.start;
+    let key = KeyMap::new(text).path_at(&span).unwrap_or("").to_owned();
+    let (key, mut message) = name_missing(key, plain_words(error.message()));
+    if let (Some(quoted), true) = (text.get(span), key.is_empty())
+        && (1..40).contains(&quoted.len())
+        && !quoted.contains(['\n', '`'])
+    {
+        message += &format!(" `{quoted}`");
+    }
     if text.trim().is_empty() {
         message = "the file is empty; a scene needs at least [camera] with eye and target".into();
     }
@@ -99,6 +115,20 @@ fn toml_fault(text: &str, error: &toml::de::Error) -> SceneError {
         key,
         message,
     }
+}
+
+/// "missing field `x`" in table `key` becomes a fault of `key.x`.
+fn name_missing(key: String, message: String) -> (String, String) {
+    let field = message
+        .strip_prefix("missing field `")
+        .and_then(|rest| rest.strip_suffix('`'));
+    let key = match field {
+        // Only [camera] is required at the top, which has no key of its own.
+        Some("camera") => "camera".to_owned(),
+        Some(field) => format!("{key}.{field}"),
+        None => return (key, message),
+    };
+    (key, "required, but missing".to_owned())
 }
 
 /// serde speaks of Rust types; a scene's author thinks of numbers.
@@ -127,12 +157,25 @@ fn name_file(error: Error, path: &Path) -> Error {
     }
 }
 
+/// Exactly three numbers; some formats would let a fourth pass unread.
+pub(super) fn vector<'de, D: Deserializer<'de>>(reader: D) -> std::result::Result<DVec3, D::Error> {
+    let numbers = Vec::<f64>::deserialize(reader)?;
+    let found = numbers.len();
+    let numbers: [f64; 3] = numbers
+        .try_into()
+        .map_err(|_| D::Error::custom(format!("expected three numbers, found {found}")))?;
+    Ok(numbers.into())
+}
+
 /// Exactly three control points.
 pub(super) fn three_points<'de, D: Deserializer<'de>>(
     reader: D,
 ) -> std::result::Result<[DVec3; 3], D::Error> {
-    let points = Vec::<DVec3>::deserialize(reader)?;
+    #[derive(Deserialize)]
+    struct Point(#[serde(deserialize_with = "vector")] DVec3);
+    let points = Vec::<Point>::deserialize(reader)?;
     let found = points.len();
+    let points: Vec<DVec3> = points.into_iter().map(|point| point.0).collect();
     points.try_into().map_err(|_| {
         D::Error::custom(format!(
             "a quadratic curve has three control points, found {found}"
