@@ -1,5 +1,7 @@
 //! Which OpenCL devices there are, and what is missing where there are none.
 
+use std::sync::{Mutex, PoisonError};
+
 use opencl3::device::{
     CL_DEVICE_TYPE_ALL, CL_DEVICE_TYPE_CPU, CL_DEVICE_TYPE_GPU, Device as ClDevice,
 };
@@ -48,6 +50,9 @@ pub struct OpenClDevice {
 
 /// Asks the OpenCL loader for every device of every platform.
 pub fn discover() -> Discovery {
+    // Drivers load at the first question. PoCL 3.1, asked by a second thread meanwhile, answers that it has no device.
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let platforms = match get_platforms() {
         Ok(platforms) => platforms,
         Err(ClError(code)) => {
