@@ -1,4 +1,39 @@
 //! Volumetric energy effects - beams, rings and curves of light - integrated along every view ray on any OpenCL device.
+//!
+//! A pixel is `I = integral over s in [0,1] of psi(L(s)) zeta(s) ds` with
+//!
+//! ```text
+//! L(s)    = (1 - s) S + s E          the ray, from the projection plane on    Watanabe, Abe, Konno 2015, eq. 19
+//! zeta(s) = alpha / (s + beta)^2     the decay, or 1                          eq. 21
+//! psi(P)  = sum of coefficient * field(P)                                     eq. 18
+//! field   = 1 / distance to the core: a point, a line, a ring,                eq. 2, 3, 7
+//!           a quadratic curve, here times its local intensity                 eq. 8-17
+//! ```
+//!
+//! A [`Scene`] is packed, uploaded and integrated on a [`Device`] by a [`Renderer`] into a [`RadianceImage`], which is
+//! tone-mapped into a [`DisplayImage`]. [`mod@reference`] computes the same in float64 by another method.
+//!
+//! ```no_run
+//! use energywave::scene::{Camera, Decay, Torus};
+//! use energywave::{Device, Renderer, Scene};
+//! use glam::DVec3;
+//!
+//! # fn main() -> energywave::Result<()> {
+//! let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
+//! scene.decay = Some(Decay { alpha: 0.1, beta: 0.1 });
+//! scene.tori.push(Torus {
+//!     center: DVec3::ZERO,
+//!     axis: DVec3::Z,
+//!     major_radius: 0.9,
+//!     coefficient: 5.1,
+//!     color: DVec3::new(0.15, 0.35, 1.0),
+//! });
+//! let mut renderer = Renderer::new(&Device::best())?; // keeps kernels and buffers from frame to frame
+//! let radiance = renderer.render(&scene)?; // linear RGBA in float32
+//! radiance.save("ring.exr", &scene.display)?;
+//! radiance.tone_map(&scene.display).save("ring.png")
+//! # }
+//! ```
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod device;

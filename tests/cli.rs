@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use energywave::RadianceImage;
@@ -11,6 +12,13 @@ use serde_json::Value;
 
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/figure-07.toml");
 const PROGRAM: &str = env!("CARGO_BIN_EXE_energywave");
+
+/// The OpenCL device under test.
+fn device() -> &'static str {
+    static DEVICE: LazyLock<String> =
+        LazyLock::new(|| std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned()));
+    &DEVICE
+}
 
 struct Folder(tempfile::TempDir);
 
@@ -94,9 +102,9 @@ fn the_reference_and_the_opencl_device_draw_the_same_picture() {
         "reference",
     );
     expect(
-        &folder.render("b.exr", &["--size", "32x32", "--device", "cpu"]),
+        &folder.render("b.exr", &["--size", "32x32", "--device", device()]),
         0,
-        "cpu",
+        "device: ",
     );
     let open = |name: &str| RadianceImage::open(folder.path().join(name)).unwrap();
     let found = energywave::image::compare(&open("b.exr"), &open("a.exr")).unwrap();
@@ -165,7 +173,7 @@ fn usage_errors_exit_with_2_and_write_nothing() {
         2,
         "simpson, exact",
     );
-    let exact = folder.render("out.png", &["--method", "exact", "--device", "cpu"]);
+    let exact = folder.render("out.png", &["--method", "exact", "--device", device()]);
     expect(&exact, 2, "use --device reference, or --method simpson");
     assert!(folder.names().is_empty(), "{:?}", folder.names());
 }
@@ -358,7 +366,7 @@ fn without_opencl_the_reference_draws_and_one_line_says_what_to_install() {
 
         let cpu = folder
             .command()
-            .args(["verify", "--device", "cpu"])
+            .args(["verify", "--device", device()])
             .env(variable, value)
             .output()
             .unwrap();
@@ -371,7 +379,7 @@ fn a_failing_kernel_build_exits_with_5_and_names_file_and_line() {
     let folder = Folder::new();
     let build = |options: &str| {
         let mut command = folder.command();
-        command.args(["render", SCENE, "-o", "out.png", "--device", "cpu"]);
+        command.args(["render", SCENE, "-o", "out.png", "--device", device()]);
         command
             .env("ENERGYWAVE_BUILD_OPTIONS", options)
             .output()
@@ -424,7 +432,7 @@ fn devices_lists_every_property_and_one_default() {
 #[test]
 fn verify_prints_a_row_for_every_ray_and_fails_on_a_wrong_one() {
     let folder = Folder::new();
-    let output = folder.run(&["verify", "--json", "--device", "cpu"]);
+    let output = folder.run(&["verify", "--json", "--device", device()]);
     expect(&output, 0, "112 of 112 values within their limits");
     for words in [
         "kind beam:",
@@ -446,7 +454,14 @@ fn verify_prints_a_row_for_every_ray_and_fails_on_a_wrong_one() {
     rays[1]["simpson_200"] = (rays[1]["simpson_200"].as_f64().unwrap() * 1.01).into();
     let file = folder.path().join("rays.json");
     std::fs::write(&file, serde_json::to_string(&rays).unwrap()).unwrap();
-    let spoiled = folder.run(&["verify", "--rays", "rays.json", "--json", "--device", "cpu"]);
+    let spoiled = folder.run(&[
+        "verify",
+        "--rays",
+        "rays.json",
+        "--json",
+        "--device",
+        device(),
+    ]);
     expect(
         &spoiled,
         6,
@@ -459,7 +474,7 @@ fn verify_prints_a_row_for_every_ray_and_fails_on_a_wrong_one() {
         "the rows are printed before the program fails"
     );
     expect(
-        &folder.run(&["verify", "--rays", "rays.json", "--device", "cpu"]),
+        &folder.run(&["verify", "--rays", "rays.json", "--device", device()]),
         6,
         "ray 1",
     );

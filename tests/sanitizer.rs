@@ -1,0 +1,27 @@
+//! Every kernel on every lane width, small enough for a simulator: `.ci/run` runs this under oclgrind, which watches every
+//! access. On any other device it is one more test.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use energywave::verify::{KnownRay, built_in_rays};
+
+#[test]
+fn every_kernel_runs_on_every_lane_width() {
+    println!("device: {}", common::device());
+    let mut scene = common::full_scene(7, 5); // 35 pixels: no multiple of any lane width
+    scene.integration.divisions = 4;
+    let rays: Vec<_> = built_in_rays()
+        .unwrap()
+        .iter()
+        .take(21)
+        .map(KnownRay::ray)
+        .collect();
+    for lanes in common::LANE_WIDTHS {
+        let mut renderer = common::renderer(lanes, "");
+        let image = renderer.render(&scene).unwrap();
+        assert!(image.as_slice().iter().all(|value| value.is_finite()));
+        let traced = renderer.trace(&scene, &rays).unwrap();
+        assert!(traced.iter().flatten().all(|value| value.is_finite()));
+    }
+}
