@@ -1,4 +1,4 @@
-//! View rays: `L(s) = (1-s) S + s E` for s in [0,1], one for every pixel (Watanabe, Abe, Konno 2015, eq. 19).
+//! View rays: `L(s) = (1-s) S + s E` for s in `[0,1]`, one for every pixel (Watanabe, Abe, Konno 2015, eq. 19).
 
 use glam::DVec3;
 
@@ -27,7 +27,7 @@ impl Ray {
         self.origin + self.span * s
     }
 
-    /// The parameter s of the point of the whole line that is nearest to `point`; it may lie outside [0,1].
+    /// The parameter s of the point of the whole line that is nearest to `point`; it may lie outside `[0,1]`.
     pub fn nearest_to(&self, point: DVec3) -> f64 {
         (point - self.origin).dot(self.span) / self.span.length_squared()
     }

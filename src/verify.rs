@@ -39,7 +39,7 @@ pub struct KnownRay {
     pub alpha: f64,
     /// Decay beta.
     pub beta: f64,
-    /// The integral over s in [0,1].
+    /// The integral over s in `[0,1]`.
     pub exact: f64,
     /// Its composite Simpson sum with 200 divisions.
     pub simpson_200: f64,

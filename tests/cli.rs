@@ -39,6 +39,7 @@ impl Folder {
     fn command(&self) -> Command {
         let mut command = Command::new(PROGRAM);
         command.current_dir(self.path());
+        command.env_remove("ENERGYWAVE_DEVICE"); // what is typed decides
         command
     }
 

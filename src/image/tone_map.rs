@@ -29,7 +29,7 @@ impl RadianceImage {
 }
 
 impl ToneMap {
-    /// Exposed radiance of one channel to [0,1]; negative radiance is black.
+    /// Exposed radiance of one channel to `[0,1]`; negative radiance is black.
     pub fn apply(self, radiance: f32) -> f32 {
         let l = radiance.max(0.0);
         let shown = match self {
@@ -46,7 +46,7 @@ impl ToneMap {
     }
 }
 
-/// The sRGB transfer function (IEC 61966-2-1), linear [0,1] to encoded [0,1].
+/// The sRGB transfer function (IEC 61966-2-1), linear `[0,1]` to encoded `[0,1]`.
 fn srgb_encode(linear: f32) -> f32 {
     match linear {
         l if l <= 0.003_130_8 => 12.92 * l,

@@ -7,7 +7,7 @@ use super::field::Sample;
 use crate::ray::Ray;
 use crate::scene::Curve;
 
-/// `C(t) = C2 t^2 + C1 t + C0`, t in [0,1], with its intensity series.
+/// `C(t) = C2 t^2 + C1 t + C0`, t in `[0,1]`, with its intensity series.
 #[derive(Debug, Clone)]
 pub struct CurveField {
     c0: DVec3,
@@ -101,7 +101,7 @@ fn stationary(c2: DVec3, c1: DVec3, c0: DVec3, offer: &mut impl FnMut(f64)) {
     }
 }
 
-/// Roots of the cubic's derivative `3 a t^2 + 2 b t + c`, ordered and clamped to [0,1]; 0 and 0 if there are none.
+/// Roots of the cubic's derivative `3 a t^2 + 2 b t + c`, ordered and clamped to `[0,1]`; 0 and 0 if there are none.
 fn turning_points(a: f64, b: f64, c: f64) -> [f64; 2] {
     let discriminant = b * b - 3.0 * a * c;
     if discriminant <= 0.0 {
@@ -143,7 +143,7 @@ fn bracketed_root(
     t
 }
 
-/// The clamped uniform quadratic B-spline `S(t)` with weights `series` at t in [0,1], by de Boor's recursion.
+/// The clamped uniform quadratic B-spline `S(t)` with weights `series` at t in `[0,1]`, by de Boor's recursion.
 pub fn b_spline(series: &[f64], t: f64) -> f64 {
     const DEGREE: usize = 2;
     let spans = series.len() - DEGREE;

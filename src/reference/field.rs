@@ -51,7 +51,7 @@ impl Field {
         }
     }
 
-    /// Appends the parameters s, inside [0,1] or not, at which the field peaks or may not be smooth along the ray.
+    /// Appends the parameters s, inside `[0,1]` or not, at which the field peaks or may not be smooth along the ray.
     pub fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>) {
         match self {
             Self::Sphere(sphere) => breaks.push(ray.nearest_to(sphere.center)),

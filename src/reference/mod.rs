@@ -83,7 +83,7 @@ impl Integrand {
     }
 }
 
-/// The integral over s in [0,1] of a field times the decay, to [`RELATIVE_ERROR`].
+/// The integral over s in `[0,1]` of a field times the decay, to [`RELATIVE_ERROR`].
 pub fn exact(field: &Field, ray: &Ray, integrand: &Integrand) -> f64 {
     let mut breaks = Vec::with_capacity(16);
     field.breaks(ray, &mut breaks);
@@ -97,7 +97,7 @@ pub fn simpson(field: &Field, ray: &Ray, integrand: &Integrand, divisions: u32) 
         .sum()
 }
 
-/// Parameter and weight of each of the `divisions + 1` samples of the composite Simpson rule over [0,1].
+/// Parameter and weight of each of the `divisions + 1` samples of the composite Simpson rule over `[0,1]`.
 pub fn simpson_nodes(divisions: u32) -> impl Iterator<Item = (f64, f64)> {
     let n = f64::from(divisions);
     (0..=divisions).map(move |k| {

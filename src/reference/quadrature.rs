@@ -6,7 +6,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Non-negative nodes of the 21-point Kronrod rule on [-1,1], outermost first; odd places are the 10-point Gauss rule's.
+/// Non-negative nodes of the 21-point Kronrod rule on `[-1,1]`, outermost first; odd places are the 10-point Gauss rule's.
 const NODES: [f64; 11] = [
     0.995_657_163_025_808_1,
     0.973_906_528_517_171_7,
@@ -128,7 +128,7 @@ impl Ord for Piece {
     }
 }
 
-/// Integral of `integrand` over [0,1], begun on the pieces between `breaks` (in any order; those outside (0,1) are
+/// Integral of `integrand` over `[0,1]`, begun on the pieces between `breaks` (in any order; those outside (0,1) are
 /// ignored), to the error `relative` times the integral of the integrand's magnitude.
 pub fn integrate(integrand: impl Fn(f64) -> f64, breaks: &mut Vec<f64>, relative: f64) -> Estimate {
     breaks.retain(|s| *s > 0.0 && *s < 1.0);

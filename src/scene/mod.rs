@@ -137,7 +137,7 @@ impl Default for ImageSize {
     }
 }
 
-/// Decay with distance, `zeta(s) = alpha / (s + beta)^2` (Watanabe, Abe, Konno 2015, eq. 21), over s in [0,1].
+/// Decay with distance, `zeta(s) = alpha / (s + beta)^2` (Watanabe, Abe, Konno 2015, eq. 21), over s in `[0,1]`.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Decay {
@@ -196,7 +196,7 @@ pub enum Method {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Measure {
-    /// The ray's parameter s in [0,1] (2015).
+    /// The ray's parameter s in `[0,1]` (2015).
     Parameter,
     /// Length in world units: `|E - S|` times as much (2010, 2006).
     Length,
@@ -208,7 +208,7 @@ pub enum Measure {
 pub struct Display {
     /// Exposure in stops: radiance times `2^exposure`.
     pub exposure: f64,
-    /// The curve that brings radiance into [0,1].
+    /// The curve that brings radiance into `[0,1]`.
     pub tone_map: ToneMap,
 }
 
