@@ -36,6 +36,7 @@
 //! ```
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod bench;
 pub mod device;
 mod error;
 pub mod image;
@@ -52,5 +53,5 @@ pub use device::{Device, DeviceType, Devices};
 pub use error::{Error, Result, SceneError};
 pub use image::{DisplayImage, RadianceImage};
 pub use opencl::BuildOptions;
-pub use renderer::Renderer;
+pub use renderer::{FrameCost, MappedImage, Renderer};
 pub use scene::Scene;

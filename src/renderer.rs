@@ -1,14 +1,49 @@
 //! The renderer: one front for the OpenCL devices and the built-in reference.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Deref};
+use std::time::{Duration, Instant};
 
 use crate::device::{Backend, Device};
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
-use crate::opencl::{BuildOptions, OpenClRenderer};
+use crate::opencl::{BuildOptions, Mapped, OpenClRenderer};
 use crate::ray::Ray;
 use crate::reference;
 use crate::scene::{Method, Scene};
+
+/// What a frame cost.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct FrameCost {
+    /// Time that the device worked on kernels.
+    pub kernel: Duration,
+    /// Integrals: pairs of a ray and a source.
+    pub evaluations: u64,
+    /// Samples of fields.
+    pub field_evaluations: u64,
+    /// Launches of kernels.
+    pub launches: u32,
+}
+
+/// An image in the renderer's own memory, linear RGBA by rows, readable until it is dropped.
+#[derive(Debug)]
+pub struct MappedImage<'a>(MappedBackend<'a>);
+
+#[derive(Debug)]
+enum MappedBackend<'a> {
+    OpenCl(Mapped<'a>),
+    Reference(&'a [f32]),
+}
+
+impl Deref for MappedImage<'_> {
+    type Target = [f32];
+
+    fn deref(&self) -> &[f32] {
+        match &self.0 {
+            MappedBackend::OpenCl(mapped) => mapped,
+            MappedBackend::Reference(values) => values,
+        }
+    }
+}
 
 /// Renders scenes on one device. Kernels and buffers are kept: frames after the first allocate nothing on the device and
 /// upload only what changed.
@@ -20,7 +55,7 @@ pub struct Renderer {
 #[derive(Debug)]
 enum RendererBackend {
     OpenCl(Box<OpenClRenderer>),
-    Reference,
+    Reference { image: Vec<f32>, cost: FrameCost },
 }
 
 impl Renderer {
@@ -41,7 +76,10 @@ impl Renderer {
             Backend::OpenCl(device) => {
                 RendererBackend::OpenCl(Box::new(OpenClRenderer::new(device, options)?))
             }
-            Backend::Reference => RendererBackend::Reference,
+            Backend::Reference => RendererBackend::Reference {
+                image: Vec::new(),
+                cost: FrameCost::default(),
+            },
         };
         Ok(Self { backend })
     }
@@ -50,7 +88,7 @@ impl Renderer {
     pub fn supports(&self, method: Method) -> bool {
         match &self.backend {
             RendererBackend::OpenCl(_) => method == Method::Simpson,
-            RendererBackend::Reference => true,
+            RendererBackend::Reference { .. } => true,
         }
     }
 
@@ -97,6 +135,36 @@ impl Renderer {
         self.draw(scene, target, &mut |_| ControlFlow::Continue(()))
     }
 
+    /// Renders into the renderer's own memory. On a CPU device the image is where the kernels wrote it: nothing is copied.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::OutOfMemory`] if the image is larger than one buffer of the device.
+    pub fn render_mapped(&mut self, scene: &Scene) -> Result<MappedImage<'_>> {
+        scene.validate()?;
+        match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => {
+                let mapped = renderer.render_mapped(scene)?;
+                Ok(MappedImage(MappedBackend::OpenCl(mapped)))
+            }
+            RendererBackend::Reference { image, cost } => {
+                let begun = Instant::now();
+                image.resize(4 * scene.image.pixels(), 0.0);
+                let nothing = &mut |_: f32| ControlFlow::Continue(());
+                reference::render_into(scene, scene.integration.method, image, nothing)?;
+                *cost = reference_cost(scene, begun.elapsed());
+                Ok(MappedImage(MappedBackend::Reference(image)))
+            }
+        }
+    }
+
+    /// What the last frame cost.
+    pub fn last_cost(&self) -> FrameCost {
+        match &self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.cost(),
+            RendererBackend::Reference { cost, .. } => *cost,
+        }
+    }
+
     fn draw(
         &mut self,
         scene: &Scene,
@@ -105,8 +173,11 @@ impl Renderer {
     ) -> Result<()> {
         match &mut self.backend {
             RendererBackend::OpenCl(renderer) => renderer.render_into(scene, target, progress),
-            RendererBackend::Reference => {
-                reference::render_into(scene, scene.integration.method, target, progress)
+            RendererBackend::Reference { cost, .. } => {
+                let begun = Instant::now();
+                reference::render_into(scene, scene.integration.method, target, progress)?;
+                *cost = reference_cost(scene, begun.elapsed());
+                Ok(())
             }
         }
     }
@@ -125,8 +196,23 @@ impl Renderer {
                     .map(|p| [p[0], p[1], p[2]].map(f64::from))
                     .collect())
             }
-            RendererBackend::Reference => Ok(reference_trace(scene, rays)),
+            RendererBackend::Reference { .. } => Ok(reference_trace(scene, rays)),
         }
+    }
+}
+
+/// The reference's time is all its own; the samples of its adaptive quadrature are not counted.
+fn reference_cost(scene: &Scene, time: Duration) -> FrameCost {
+    let evaluations = scene.image.pixels() as u64 * scene.source_count() as u64;
+    let samples = match scene.integration.method {
+        Method::Simpson => u64::from(scene.integration.divisions) + 1,
+        Method::Exact => 0,
+    };
+    FrameCost {
+        kernel: time,
+        evaluations,
+        field_evaluations: evaluations * samples,
+        launches: 1,
     }
 }
 

@@ -22,6 +22,8 @@ pub enum Command {
     Render(RenderArguments),
     /// List the devices, which one is the default and why, and what is missing
     Devices(DevicesArguments),
+    /// Measure the paper's speed tables, or a scene
+    Bench(BenchArguments),
     /// Check a device against rays whose integrals are known
     Verify(VerifyArguments),
 }
@@ -65,6 +67,28 @@ pub struct VerifyArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct BenchArguments {
+    /// Scene file to measure instead of the paper's tables
+    pub scene: Option<PathBuf>,
+    /// One of the paper's tables: 2 (torus) or 3 (Bezier); both without
+    #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3), conflicts_with = "scene")]
+    pub table: Option<u8>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Folder for the last frame of each measurement, as EXR
+    #[arg(long, value_name = "DIR")]
+    pub frames_out: Option<PathBuf>,
+    /// Time of each measurement
+    #[arg(long, default_value_t = 1.0, value_parser = seconds)]
+    pub seconds: f64,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+}
+
+#[derive(Debug, Args)]
 pub struct DeviceArgument {
     /// Index, part of a name, gpu, cpu or reference [env: ENERGYWAVE_DEVICE] [default: best GPU, else CPU, else reference]
     #[arg(long)]
@@ -75,16 +99,16 @@ pub struct DeviceArgument {
 #[derive(Debug, Args)]
 pub struct Overrides {
     /// Size of the image in pixels, such as 640x360
-    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, requires = "scene")]
     pub size: Option<ImageSize>,
     /// The quadrature
-    #[arg(long)]
+    #[arg(long, requires = "scene")]
     pub method: Option<MethodName>,
     /// Divisions of the Simpson rule, even, 2 to 65536
-    #[arg(long, value_parser = divisions, allow_hyphen_values = true)]
+    #[arg(long, value_parser = divisions, allow_hyphen_values = true, requires = "scene")]
     pub divisions: Option<u32>,
     /// Relative error aimed at by the exact method
-    #[arg(long, value_parser = tolerance)]
+    #[arg(long, value_parser = tolerance, requires = "scene")]
     pub tolerance: Option<f64>,
 }
 
@@ -126,6 +150,13 @@ fn divisions(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(divisions @ 2..=65536) if divisions % 2 == 0 => Ok(divisions),
         _ => Err("Simpson's rule needs an even number from 2 to 65536".to_owned()),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.0..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("a time is a number of seconds up to 3600".to_owned()),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The program: what was typed ([`args`]), then what is done, one file for each subcommand, then an exit code.
 
 mod args;
+mod bench;
 mod devices;
 mod progress;
 mod render;
@@ -38,6 +39,7 @@ pub fn run() -> ExitCode {
     let outcome = match arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Devices(arguments) => devices::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
     };
     let Err(failure) = outcome else {

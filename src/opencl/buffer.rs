@@ -4,7 +4,9 @@ use std::ffi::c_void;
 use std::ptr;
 
 use bytemuck::Pod;
-use opencl3::memory::{Buffer, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE, ClMem};
+use opencl3::memory::{
+    Buffer, CL_MAP_READ, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE, ClMem,
+};
 use opencl3::types::{CL_TRUE, cl_mem};
 
 use super::Compute;
@@ -25,6 +27,47 @@ impl<T: Pod> DeviceBuffer<T> {
     /// [`Error::OutOfMemory`] beyond the device's limits, [`Error::Device`] if the driver refuses.
     pub fn new(compute: &Compute, what: &str, len: usize) -> Result<Self> {
         Self::with_flags(compute, what, len, CL_MEM_READ_WRITE)
+    }
+
+    /// Like [`DeviceBuffer::new`], placed so that mapping it copies nothing where device and host share their memory.
+    pub(super) fn image(compute: &Compute, what: &str, len: usize) -> Result<Self> {
+        let shared = compute.device.shares_host_memory;
+        let place = if shared { CL_MEM_ALLOC_HOST_PTR } else { 0 };
+        Self::with_flags(compute, what, len, CL_MEM_READ_WRITE | place)
+    }
+
+    /// Maps the first `len` elements for reading, after all earlier commands of the queue, and waits for it.
+    pub(super) fn map(&self, compute: &Compute, len: usize) -> Result<*const f32> {
+        self.check_len(compute, "clEnqueueMapBuffer", len)?;
+        let mut pointer = ptr::null_mut::<c_void>();
+        // SAFETY: the range lies within the buffer; the pointer is used only until `unmap`.
+        unsafe {
+            compute.queue.enqueue_map_buffer(
+                &self.buffer,
+                CL_TRUE,
+                CL_MAP_READ,
+                0,
+                len * size_of::<T>(),
+                &mut pointer,
+                &[],
+            )
+        }
+        .map_err(failed(&compute.device.name, "clEnqueueMapBuffer"))?;
+        Ok(pointer.cast_const().cast())
+    }
+
+    /// Ends a mapping.
+    pub(super) fn unmap(&self, compute: &Compute, pointer: *const f32) -> Result<()> {
+        // SAFETY: the pointer came from `map`, and nobody reads through it any more.
+        unsafe {
+            compute.queue.enqueue_unmap_mem_object(
+                self.buffer.get(),
+                pointer.cast_mut().cast::<c_void>(),
+                &[],
+            )
+        }
+        .map_err(failed(&compute.device.name, "clEnqueueUnmapMemObject"))?;
+        Ok(())
     }
 
     fn with_flags(compute: &Compute, what: &str, len: usize, flags: u64) -> Result<Self> {

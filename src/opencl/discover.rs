@@ -44,6 +44,8 @@ pub struct OpenClDevice {
     pub max_allocation_bytes: u64,
     /// Lanes of the kernels by default: 1 on GPUs, the float vector width on CPUs.
     pub lanes: u32,
+    /// Whether it works in the host's own memory.
+    pub shares_host_memory: bool,
     /// Whether it is a simulator, which is never chosen by default.
     pub is_simulator: bool,
 }
@@ -107,6 +109,7 @@ fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
         memory_bytes: handle.global_mem_size().ok()?,
         max_allocation_bytes: handle.max_mem_alloc_size().ok()?,
         lanes: supported_lanes(lanes),
+        shares_host_memory: handle.host_unified_memory().unwrap_or(false),
         is_simulator,
         platform,
         handle,

@@ -1,6 +1,7 @@
 //! Builds the kernels for a device, with readable logs, and runs them.
 
 use std::ffi::CString;
+use std::time::Duration;
 
 use bytemuck::Pod;
 use opencl3::error_codes::ClError;
@@ -177,6 +178,18 @@ pub(super) fn enqueue(
         )
     }
     .map_err(failed(&compute.device.name, "clEnqueueNDRangeKernel"))
+}
+
+/// Waits for a launch: how long the device worked on it.
+pub(super) fn run_time(compute: &Compute, event: &Event) -> Result<Duration> {
+    let name = &compute.device.name;
+    event.wait().map_err(failed(name, "clWaitForEvents"))?;
+    let begun = event.profiling_command_start();
+    let ended = event.profiling_command_end();
+    let nanoseconds = begun
+        .and_then(|begun| Ok(ended?.saturating_sub(begun)))
+        .map_err(failed(name, "clGetEventProfilingInfo"))?;
+    Ok(Duration::from_nanos(nanoseconds))
 }
 
 impl Program {

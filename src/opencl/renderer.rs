@@ -1,18 +1,19 @@
 //! Renders scenes on an OpenCL device: uploads what changed, launches the kernels, reads the image back.
 
-use std::ops::ControlFlow;
-use std::time::Instant;
+use std::ops::{ControlFlow, Range};
 
+use opencl3::event::Event;
 use opencl3::kernel::Kernel;
 
-use super::failure::failed;
 use super::launch::{Pace, Part, Work, launch, source_count};
-use super::program::{Argument, BuildOptions, Program, enqueue, set_arguments};
+use super::mapped::Mapped;
+use super::program::{Argument, BuildOptions, Program, enqueue, run_time, set_arguments};
 use super::{Compute, DeviceBuffer, OpenClDevice, Uploaded};
 use crate::device::DeviceType;
 use crate::error::{Error, Result};
 use crate::pack::{self, Sources, layout};
 use crate::ray::{Ray, ViewPlane};
+use crate::renderer::FrameCost;
 use crate::scene::{Method, Scene};
 
 /// A pixel of the output: linear RGBA.
@@ -26,9 +27,17 @@ pub struct OpenClRenderer {
     trace: Option<Kernel>,
     lanes: u32,
     lists: Lists,
-    output: Option<DeviceBuffer<Pixel>>,
+    pub(super) output: Option<DeviceBuffer<Pixel>>,
     pace: Pace,
-    compute: Compute,
+    cost: FrameCost,
+    pub(super) compute: Compute,
+}
+
+/// A launch under way.
+struct Launched {
+    event: Event,
+    integrals: u64,
+    evaluations: f64,
 }
 
 /// What the kernels read.
@@ -66,6 +75,7 @@ impl OpenClRenderer {
             lists: Lists::new(),
             output: None,
             pace: Pace::new(),
+            cost: FrameCost::default(),
             options: options.clone(),
             compute,
         })
@@ -83,12 +93,22 @@ impl OpenClRenderer {
         target: &mut [f32],
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
+        let job = self.job(scene)?;
+        self.run(&job, bytemuck::cast_slice_mut(target), progress)
+    }
+
+    /// What the last frame cost.
+    pub(crate) fn cost(&self) -> FrameCost {
+        self.cost
+    }
+
+    /// Packs a frame and uploads what changed.
+    fn job(&mut self, scene: &Scene) -> Result<Job> {
         self.require_simpson(scene)?;
         let plane = ViewPlane::new(&scene.camera, scene.image);
         let sources = Sources::new(scene, plane.eye, plane.ray_length);
         let view = pack::view(&plane, scene.image.width, scene.integration.softening);
-        let job = self.upload(scene, view, sources, None)?;
-        self.run(&job, bytemuck::cast_slice_mut(target), progress)
+        self.upload(scene, view, sources, None)
     }
 
     /// Linear RGBA along single rays; light is measured over the parameter s.
@@ -161,63 +181,105 @@ impl OpenClRenderer {
         target: &mut [Pixel],
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
-        self.pace.begin(&job.sources);
         let total = target.len() as f32;
         let band_len = self.band_len(target.len())?;
-        for (index, band) in target.chunks_mut(band_len).enumerate() {
-            let begin = (index * band_len) as u32;
-            let end = begin + band.len() as u32;
-            let mut pixel = begin;
-            while pixel < end {
-                let pixels = pixel..pixel + self.pace.pixels(&job.work, end - pixel);
-                self.launch_pixels(job, pixels.clone(), pixels.start - begin)?;
-                pixel = pixels.end;
-                if progress(pixel as f32 / total).is_break() {
-                    return Err(Error::Interrupted);
-                }
-            }
+        let mut end = 0;
+        self.begin(job);
+        for band in target.chunks_mut(band_len) {
+            let begin = end;
+            end += band.len() as u32;
+            let mut report = |pixel: u32| progress(pixel as f32 / total);
+            let last = self.launch_band(job, begin..end, &mut report)?;
             if let Some(output) = &self.output {
                 output.read(&self.compute, band)?;
             }
+            self.settle(last)?;
         }
         Ok(())
     }
 
-    /// Renders some pixels with all sources, in one launch or in several that add up.
-    fn launch_pixels(&mut self, job: &Job, pixels: std::ops::Range<u32>, slot: u32) -> Result<()> {
-        let all = job.work.source_count;
-        let mut source = 0;
-        loop {
-            let count = self
-                .pace
-                .sources(&job.work, pixels.len() as u32, all - source);
-            let part = Part {
-                pixels: pixels.clone(),
-                sources: source..source + count,
-            };
-            let begun = Instant::now();
-            self.launch(job, &launch(&part, slot, &job.sources, job.work.node_count))?;
-            self.pace
-                .measured(part.evaluations(&job.work), begun.elapsed());
-            source = part.sources.end;
-            if source >= all {
-                return Ok(());
-            }
+    /// Renders into the device's own buffer and maps it: on a CPU, nothing is copied.
+    pub(crate) fn render_mapped(&mut self, scene: &Scene) -> Result<Mapped<'_>> {
+        let job = self.job(scene)?;
+        let pixels = scene.image.pixels();
+        if self.band_len(pixels)? < pixels {
+            return Err(Error::OutOfMemory(format!(
+                "{}: {}x{} pixels are more than one buffer of the device holds; read the image back instead",
+                self.device().name,
+                scene.image.width,
+                scene.image.height
+            )));
         }
+        self.begin(&job);
+        let last = self.launch_band(&job, 0..pixels as u32, &mut |_| ControlFlow::Continue(()))?;
+        let Some(output) = &self.output else {
+            return Err(Error::OutOfMemory("no output buffer".to_owned()));
+        };
+        let pointer = output.map(&self.compute, pixels)?;
+        self.settle(last)?;
+        Ok(Mapped {
+            pointer,
+            pixels,
+            renderer: self,
+        })
     }
 
-    fn launch(&self, job: &Job, launch: &layout::Launch) -> Result<()> {
+    fn begin(&mut self, job: &Job) {
+        self.pace.begin(&job.sources);
+        self.cost = FrameCost::default();
+    }
+
+    /// Launches all sources on a band of pixels. The last launch may still be under way.
+    fn launch_band(
+        &mut self,
+        job: &Job,
+        band: Range<u32>,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<Option<Launched>> {
+        let all = job.work.source_count;
+        let mut pixel = band.start;
+        let mut last = None;
+        while pixel < band.end {
+            let pixels = pixel..pixel + self.pace.pixels(&job.work, band.end - pixel);
+            let mut source = 0;
+            loop {
+                // One launch at a time: the pace of the next depends on it, and the queue stays short.
+                self.settle(last.take())?;
+                let count = self
+                    .pace
+                    .sources(&job.work, pixels.len() as u32, all - source);
+                let part = Part {
+                    pixels: pixels.clone(),
+                    sources: source..source + count,
+                };
+                last = Some(self.launch(job, &part, pixels.start - band.start)?);
+                source = part.sources.end;
+                if source >= all {
+                    break;
+                }
+            }
+            pixel = pixels.end;
+            if progress(pixel).is_break() {
+                self.settle(last)?;
+                return Err(Error::Interrupted);
+            }
+        }
+        Ok(last)
+    }
+
+    fn launch(&self, job: &Job, part: &Part, slot: u32) -> Result<Launched> {
         let kernel = match &self.trace {
             Some(trace) if job.has_rays => trace,
             _ => &self.render,
         };
         let Some(output) = &self.output else {
-            return Ok(());
+            return Err(Error::OutOfMemory("no output buffer".to_owned()));
         };
+        let launch = launch(part, slot, &job.sources, job.work.node_count);
         let lists = &self.lists;
         let mut arguments: Vec<&dyn Argument> = vec![
             &job.view,
-            launch,
+            &launch,
             &lists.nodes,
             &lists.spheres,
             &lists.cylinders,
@@ -234,10 +296,26 @@ impl OpenClRenderer {
             DeviceType::Gpu => 64,
             _ => 16,
         };
-        let items = (launch.count as usize).div_ceil(self.lanes as usize);
-        enqueue(&self.compute, kernel, items, group)?
-            .wait()
-            .map_err(failed(&self.device().name, "clWaitForEvents"))
+        let items = part.pixels.len().div_ceil(self.lanes as usize);
+        Ok(Launched {
+            event: enqueue(&self.compute, kernel, items, group)?,
+            integrals: part.pixels.len() as u64 * (part.sources.end - part.sources.start),
+            evaluations: part.evaluations(&job.work),
+        })
+    }
+
+    /// Waits for a launch and learns from it.
+    fn settle(&mut self, launched: Option<Launched>) -> Result<()> {
+        let Some(launched) = launched else {
+            return Ok(());
+        };
+        let time = run_time(&self.compute, &launched.event)?;
+        self.pace.measured(launched.evaluations, time);
+        self.cost.kernel += time;
+        self.cost.launches += 1;
+        self.cost.evaluations += launched.integrals;
+        self.cost.field_evaluations += launched.evaluations as u64;
+        Ok(())
     }
 
     /// Makes sure of an output buffer for `pixels` pixels, or for as many as the device's limits allow.
@@ -251,7 +329,7 @@ impl OpenClRenderer {
             Some(output) if output.len() >= wanted => {}
             _ => {
                 self.output = None;
-                self.output = Some(DeviceBuffer::new(&self.compute, "the image", wanted)?);
+                self.output = Some(DeviceBuffer::image(&self.compute, "the image", wanted)?);
             }
         }
         Ok(wanted.max(1))
