@@ -72,11 +72,6 @@ float3v cross3(const float3v a, const float3v b) {
     return r;
 }
 
-// 1 / sqrt(x). A build option may put another form in its place.
-#ifndef inverse_sqrt
-#define inverse_sqrt(x) rsqrt(x)
-#endif
-
 // One value a lane, from memory that the lanes do not share evenly.
 floatv gather(__global const float *const values, const intv index) {
 #if LANES == 1

@@ -210,14 +210,14 @@ impl Device {
     }
 }
 
-/// Place of the best GPU, else of the best CPU, else of any other device, else of the reference.
+/// Place of the best GPU, else of the best CPU, else of the reference.
 fn best_index(list: &[Device]) -> usize {
     let rank = |device: &Device| match device.device_type {
         _ if device.is_simulator() => 4,
         DeviceType::Gpu => 0,
         DeviceType::Cpu => 1,
-        DeviceType::Accelerator => 2,
-        DeviceType::Reference => 3,
+        DeviceType::Reference => 2,
+        DeviceType::Accelerator => 3,
     };
     list.iter()
         .min_by_key(|device| (rank(device), std::cmp::Reverse(device.compute_units)))

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::image::RadianceImage;
 use crate::opencl::{BuildOptions, Mapped, OpenClRenderer};
 use crate::ray::Ray;
-use crate::reference;
+use crate::reference::{self, Tracer};
 use crate::scene::{Method, Scene};
 
 /// What a frame cost.
@@ -196,7 +196,13 @@ impl Renderer {
                     .map(|p| [p[0], p[1], p[2]].map(f64::from))
                     .collect())
             }
-            RendererBackend::Reference { .. } => Ok(reference_trace(scene, rays)),
+            RendererBackend::Reference { .. } => {
+                let tracer = Tracer::new(scene, scene.integration.method, 1.0);
+                Ok(rays
+                    .iter()
+                    .map(|ray| tracer.radiance(ray).to_array())
+                    .collect())
+            }
         }
     }
 }
@@ -214,25 +220,4 @@ fn reference_cost(scene: &Scene, time: Duration) -> FrameCost {
         field_evaluations: evaluations * samples,
         launches: 1,
     }
-}
-
-fn reference_trace(scene: &Scene, rays: &[Ray]) -> Vec<[f64; 3]> {
-    let sources = reference::sources(scene);
-    let integrand = reference::Integrand {
-        decay: scene.decay,
-        softening: scene.integration.softening,
-    };
-    let radiance = |ray: &Ray| {
-        let lights = sources.iter().map(|source| {
-            let integral = match scene.integration.method {
-                Method::Exact => reference::exact(&source.field, ray, &integrand),
-                Method::Simpson => {
-                    reference::simpson(&source.field, ray, &integrand, scene.integration.divisions)
-                }
-            };
-            source.emission * integral
-        });
-        lights.sum::<glam::DVec3>().to_array()
-    };
-    rays.iter().map(radiance).collect()
 }

@@ -114,10 +114,25 @@ pub fn rays_from_file(path: &Path) -> Result<Vec<KnownRay>> {
 }
 
 fn parse(text: &str, path: &Path) -> Result<Vec<KnownRay>> {
-    serde_json::from_str(text).map_err(|error| Error::Input {
+    let fail = |reason: String| Error::Input {
         path: path.to_owned(),
-        reason: format!("not a list of rays: {error}"),
-    })
+        reason,
+    };
+    let rays: Vec<KnownRay> =
+        serde_json::from_str(text).map_err(|error| fail(format!("not a list of rays: {error}")))?;
+    for (index, ray) in rays.iter().enumerate() {
+        if ray.start == ray.end {
+            return Err(fail(format!(
+                "ray {index}: start and end are the same point"
+            )));
+        }
+        if let Some(scene) = ray.scene() {
+            scene
+                .validate()
+                .map_err(|error| fail(format!("ray {index}: {error}")))?;
+        }
+    }
+    Ok(rays)
 }
 
 impl KnownRay {
@@ -186,7 +201,7 @@ impl KnownRay {
 /// Sends the rays of every kind that this version draws through a device, by a method it has.
 ///
 /// # Errors
-/// As [`Renderer::trace`]; [`Error::Scene`] names the ray.
+/// As [`Renderer::trace`].
 pub fn verify(
     renderer: &mut Renderer,
     device: &str,
@@ -201,9 +216,7 @@ pub fn verify(
         };
         scene.integration.method = method;
         scene.integration.tolerance = tolerance;
-        let traced = renderer
-            .trace(&scene, &[ray.ray()])
-            .map_err(|error| name_ray(error, index))?;
+        let traced = renderer.trace(&scene, &[ray.ray()])?;
         let value = traced.first().map_or(f64::NAN, |radiance| radiance[0]);
         let (expected, limit) = match method {
             Method::Exact => (ray.exact, tolerance),
@@ -218,19 +231,17 @@ pub fn verify(
             exact: ray.exact,
             expected,
             value,
-            relative_error: (value / expected - 1.0).abs(),
+            relative_error: relative_error(value, expected),
             limit,
         });
     }
     Ok(rows)
 }
 
-fn name_ray(error: Error, index: usize) -> Error {
-    match error {
-        Error::Scene(mut fault) => {
-            fault.key = format!("ray {index}: {}", fault.key);
-            Error::Scene(fault)
-        }
-        other => other,
+/// 0 where both are 0.
+fn relative_error(value: f64, expected: f64) -> f64 {
+    if value == expected {
+        return 0.0;
     }
+    ((value - expected) / expected).abs()
 }

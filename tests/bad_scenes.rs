@@ -53,7 +53,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[image]\nheight = -5\n",
         "5:10: image.height",
-        "not negative",
+        "a whole number from 0",
     ),
     (
         "[image]\nheight = 2.5\n",
@@ -81,7 +81,7 @@ const BAD: &[(&str, &str, &str)] = &[
         "parallel to the view",
     ),
     ("near = 100.0\n", "4:8: camera.near", "behind the target"),
-    ("fov_y = 180.0\n", "4:9: camera.fov_y", "180"),
+    ("fov_y = 180.0\n", "4:9: camera.fov_y", "179.9"),
     (
         "[[curve]]\ncontrol_points = [[0, 0, 0], [1, 1, 1]]\n",
         "5:18: curve[0].control_points",
@@ -163,6 +163,21 @@ const BAD: &[(&str, &str, &str)] = &[
         "required, but missing",
     ),
     (
+        "[torus]\nmajor_radius = 1\n",
+        "4:1: torus",
+        "double brackets, such as [[sphere]]",
+    ),
+    (
+        "[[sphere]]\ncoefficient = 1e9\ncolor = [1e9, 1, 1]\n[decay]\nalpha = 1e6\nbeta = 0.01\n",
+        "5:15: sphere[0].coefficient",
+        "more than float32 holds",
+    ),
+    (
+        "[decay]\nalpha = 1e9\nbeta = 1e-9\n",
+        "6:8: decay.beta",
+        "more than float32 holds",
+    ),
+    (
         "[display]\nexposure = 1e4\n",
         "5:12: display.exposure",
         "100 stops",
@@ -190,6 +205,7 @@ const BAD_FILES: &[(&str, &[u8], &str)] = &[
     ("value.json", b"{\"camera\": {\"eye\": [0, -4, 2], \"target\": [0, 0, 0]}, \"torus\": [{\"major_radius\": -1}]}", "value.json: torus[0].major_radius: must be positive"),
     ("four.json", b"{\"camera\": {\"eye\": [0, -4, 2, 1], \"target\": [0, 0, 0]}}", "camera.eye: expected three numbers, found 4"),
     ("cut.json", b"{\"camera\": {\"eye\": [0, -4", "cut.json:1:25:"),
+    ("empty.JSON", b"", "empty.JSON:1:1: camera: the file is empty"),
     ("twice.json", b"{\"camera\": {\"eye\": [0, -4, 2], \"target\": [0, 0, 0]}} {}", "twice.json:1:54: trailing"),
 ];
 

@@ -109,6 +109,50 @@ fn one_wrong_pixel_fails_the_same_comparison() {
     assert_eq!(found.worst, (60, 7));
 }
 
+/// Weighted curves whose nearest point is a matter of choice: a point, folds that run twice through the same points, and
+/// a nearly straight one from afar.
+fn weighted_curves() -> Vec<(&'static str, [[f64; 3]; 3], f64)> {
+    vec![
+        ("a point", [[0.3, 0.2, 0.1]; 3], 1.0),
+        (
+            "closed",
+            [[0.1, 0.2, 0.3], [0.7, 0.9, 1.3], [0.1, 0.2, 0.3]],
+            1.0,
+        ),
+        (
+            "a skew fold",
+            [[0.1, 0.2, 0.3], [2.2, 1.4, 0.9], [0.8, 0.6, 0.5]],
+            1.0,
+        ),
+        (
+            "nearly straight",
+            [[-0.5, 0.0, 0.0], [0.0, -0.000_475, 0.0], [0.5, 0.0, 0.0]],
+            300.0,
+        ),
+        (
+            "straight",
+            [[-0.5, 0.0, 0.0], [0.2, 0.0, 0.0], [0.5, 0.0, 0.0]],
+            1.0,
+        ),
+    ]
+}
+
+#[test]
+fn the_intensity_at_the_nearest_point_does_not_hang_on_rounding() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for (name, points, distance) in weighted_curves() {
+        let mut scene = empty_scene(37, 23);
+        scene.camera.eye *= distance;
+        scene.camera.near = 0.8 * scene.camera.eye.length();
+        let series = Some(vec![1.0, 5.0, 2.0, 8.0]);
+        scene.curves.push(common::curve(points, series));
+        let image = renderer.render(&scene).unwrap();
+        let found = difference(&image, &reference::render_simpson(&scene).unwrap());
+        println!("{name}: {found:?}");
+        assert!(found.max < WORST_PIXEL, "{name}: {found:?}");
+    }
+}
+
 #[test]
 fn every_lane_width_gives_the_same_image() {
     let scene = full_scene(53, 19);

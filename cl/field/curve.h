@@ -3,6 +3,7 @@
 // t*.
 #pragma once
 #include "../ray.h"
+#include "../roots.h"
 #include "../sources.h"
 #include "cubic.h"
 #include "spline.h"
@@ -12,14 +13,20 @@ typedef struct {
     floatv at, slope;
 } Linear;
 
+Linear linear(const floatv at, const floatv slope) {
+    const Linear l = {at, slope};
+    return l;
+}
+
 floatv linear_at(const Linear l, const floatv s) {
     return fma(l.slope, s, l.at);
 }
 
+// Lengths are doubled; p, h and the parameter are not lengths.
 typedef struct {
     Linear along, across, normal; // P in the curve's frame, from C(1/2)
     Linear p, h;                  // of the cubic u^3 + 3 p u + 2 h = 0 for u = t - 1/2 + vertex
-    float velocity_along, velocity_across, bend, vertex;
+    float velocity_along, velocity_across, bend, vertex, tie;
     float inverse_speed2; // 1 / |C'(1/2)|^2, 0 for a point
     uint is_straight, spline_count;
     __global const SplinePiece *pieces;
@@ -31,18 +38,19 @@ curve_path curve_along(const Ray *const ray, const Sources *const sources, const
     const float3v from_middle = subtract3(ray->origin, uniform3(curve->middle));
     const float3v along = uniform3(curve->along), across = uniform3(curve->across), normal = uniform3(curve->normal);
     curve_path path;
-    path.along.at = dot3(from_middle, along), path.along.slope = dot3(ray->span, along);
-    path.across.at = dot3(from_middle, across), path.across.slope = dot3(ray->span, across);
-    path.normal.at = dot3(from_middle, normal), path.normal.slope = dot3(ray->span, normal);
-    path.velocity_along = curve->velocity_along;
-    path.velocity_across = curve->velocity_across;
-    path.bend = curve->bend;
+    path.along = linear(2.0f * dot3(from_middle, along), 2.0f * dot3(ray->span, along));
+    path.across = linear(2.0f * dot3(from_middle, across), 2.0f * dot3(ray->span, across));
+    path.normal = linear(2.0f * dot3(from_middle, normal), 2.0f * dot3(ray->span, normal));
+    path.velocity_along = 2.0f * curve->velocity_along;
+    path.velocity_across = 2.0f * curve->velocity_across;
+    path.bend = 2.0f * curve->bend;
     path.vertex = curve->vertex;
+    path.tie = 4.0f * curve->tie;
     path.is_straight = curve->is_straight;
     path.spline_count = curve->spline_count;
     path.pieces = sources->spline_pieces + curve->spline_begin;
-    path.softening2 = ray->softening2;
-    path.floor2 = ray->floor2;
+    path.softening2 = 4.0f * ray->softening2;
+    path.floor2 = 4.0f * ray->floor2;
 
     // From |C2|^2 (2 u^3) + (velocity^2 - 2 bend Y) u - velocity X = 0, (X, Y) = P from the parabola's vertex.
     const float speed2 = fma(path.velocity_along, path.velocity_along, path.velocity_across * path.velocity_across);
@@ -65,8 +73,10 @@ floatv curve_distance2(const curve_path *const path, const floatv along, const f
     return fma(a, a, fma(b, b, normal * normal));
 }
 
-// Nearest point of a curve that is all but straight: the foot on the tangent at C(1/2), then corrected for the bend.
-floatv nearest_on_straight(const curve_path *const path, const floatv along, const floatv across) {
+// Nearest point of a curve that is all but straight: the foot on the tangent at C(1/2), corrected for the bend by
+// Newton steps; or an end, where the curve turns away.
+floatv nearest_on_straight(const curve_path *const path, const floatv along, const floatv across, const floatv normal,
+                           floatv *const distance2) {
     const floatv to_foot = fma(along, path->velocity_along, across * path->velocity_across);
     floatv x = clamp(to_foot * path->inverse_speed2, -0.5f, 0.5f);
     for (int step = 0; step < 2; ++step) {
@@ -74,7 +84,14 @@ floatv nearest_on_straight(const curve_path *const path, const floatv along, con
         const floatv b = fma(-fma(splat(path->bend), x, splat(path->velocity_across)), x, across);
         const floatv velocity_across = fma(splat(2.0f * path->bend), x, splat(path->velocity_across));
         const floatv slope = fma(a, path->velocity_along, b * velocity_across);
-        x = clamp(fma(slope, path->inverse_speed2, x), -0.5f, 0.5f);
+        const floatv curvature = max(1.0f - 2.0f * path->bend * b * path->inverse_speed2, 0.25f);
+        x = clamp(fma(slope / curvature, path->inverse_speed2, x), -0.5f, 0.5f);
+    }
+    *distance2 = curve_distance2(path, along, across, normal, x);
+    for (float end = -0.5f; end < 1.0f; end += 1.0f) {
+        const floatv to_end = curve_distance2(path, along, across, normal, splat(end));
+        x = select(x, splat(end), to_end < *distance2);
+        *distance2 = min(*distance2, to_end);
     }
     return x;
 }
@@ -85,34 +102,30 @@ floatv nearest_on_curve(const curve_path *const path, const floatv s, floatv *co
     const floatv along = linear_at(path->along, s);
     const floatv across = linear_at(path->across, s);
     const floatv normal = linear_at(path->normal, s);
-    if (path->is_straight) {
-        const floatv x = nearest_on_straight(path, along, across);
-        *distance2 = curve_distance2(path, along, across, normal, x);
-        return x;
-    }
+    if (path->is_straight)
+        return nearest_on_straight(path, along, across, normal, distance2);
     const floatv p = linear_at(path->p, s);
     const floatv h = linear_at(path->h, s);
-    const floatv discriminant = fma(h, h, p * p * p);
-    const intv is_single = discriminant > 0.0f;
-    floatv first = single_root(p, h, discriminant);
-    floatv second = first;
-    if (any_lane(!is_single)) {
-        floatv least, greatest;
-        outer_roots(p, h, &least, &greatest);
-        first = select(least, first, is_single);
-        second = select(greatest, second, is_single);
+    const floatv discriminant = fma(p * p, p, h * h);
+    const intv has_three = discriminant <= 0.0f;
+    floatv nearest = clamp(single_root(p, h, discriminant) - path->vertex, -0.5f, 0.5f);
+    *distance2 = curve_distance2(path, along, across, normal, nearest);
+    if (any_lane(has_three)) {
+        floatv first, second;
+        outer_roots(p, h, &first, &second);
+        first = clamp(first - path->vertex, -0.5f, 0.5f);
+        second = clamp(second - path->vertex, -0.5f, 0.5f);
+        const floatv to_first = curve_distance2(path, along, across, normal, first);
+        const floatv to_second = curve_distance2(path, along, across, normal, second);
+        *distance2 = select(*distance2, min(to_first, to_second), has_three);
+        nearest = select(nearest, select(first, second, to_second < to_first - path->tie), has_three);
     }
-    first = clamp(first - path->vertex, -0.5f, 0.5f);
-    second = clamp(second - path->vertex, -0.5f, 0.5f);
-    const floatv to_first = curve_distance2(path, along, across, normal, first);
-    const floatv to_second = curve_distance2(path, along, across, normal, second);
-    *distance2 = min(to_first, to_second);
-    return select(first, second, to_second < to_first);
+    return nearest;
 }
 
 floatv curve_field(const curve_path *const path, const floatv s) {
     floatv distance2;
     const floatv x = nearest_on_curve(path, s, &distance2);
-    const floatv field = inverse_sqrt(max(distance2 + path->softening2, path->floor2));
+    const floatv field = twice_inverse_sqrt(max(distance2 + path->softening2, path->floor2));
     return path->spline_count ? field * spline_at(path->pieces, path->spline_count, x + 0.5f) : field;
 }

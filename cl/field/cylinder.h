@@ -2,9 +2,11 @@
 // |(P - M) x D|, a cross product instead of the printed difference of squares, which cancels near the line.
 #pragma once
 #include "../ray.h"
+#include "../roots.h"
 #include "../sources.h"
 #include "quadratic.h"
 
+// Lengths are doubled.
 typedef struct {
     Quadratic distance2;
     floatv floor2;
@@ -14,12 +16,11 @@ cylinder_path cylinder_along(const Ray *const ray, const Sources *const sources,
     __global const Cylinder *const cylinder = &sources->cylinders[index];
     const float3v direction = uniform3(cylinder->direction);
     const float3v from_point = subtract3(ray->origin, uniform3(cylinder->point));
-    cylinder_path path = {squared_length_along(cross3(from_point, direction), cross3(ray->span, direction)),
-                          ray->floor2};
-    path.distance2.least += ray->softening2;
+    const Quadratic distance2 = squared_length_along(cross3(from_point, direction), cross3(ray->span, direction));
+    const cylinder_path path = {doubled(distance2, ray->softening2), 4.0f * ray->floor2};
     return path;
 }
 
 floatv cylinder_field(const cylinder_path *const path, const floatv s) {
-    return inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2));
+    return twice_inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2));
 }

@@ -6,17 +6,23 @@
 typedef struct {
     floatv slope;
     floatv offset;
-    floatv least;
+    floatv least; // never 0: its root may be divided by
 } Quadratic;
 
 // |start + s span|^2
 Quadratic squared_length_along(const float3v start, const float3v span) {
     const floatv span2 = dot3(span, span);
     const floatv slope = sqrt(span2);
-    const floatv nearest = select(-dot3(start, span) / span2, splat(0.0f), span2 == 0.0f);
+    const floatv nearest = select(-dot3(start, span) / span2, splat(0.0f), span2 < 1e-36f);
     const float3v closest = fma3(span, nearest, start);
-    const Quadratic q = {slope, -slope * nearest, dot3(closest, closest)};
+    const Quadratic q = {slope, -slope * nearest, max(dot3(closest, closest), 1e-30f)};
     return q;
+}
+
+// The same with all lengths doubled, softened.
+Quadratic doubled(const Quadratic q, const floatv softening2) {
+    const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, 4.0f * (q.least + softening2)};
+    return d;
 }
 
 floatv quadratic_at(const Quadratic *const q, const floatv s) {

@@ -2,9 +2,11 @@
 // Konno 2015, eq. 7). Along a ray rho^2 is a quadratic and z is linear.
 #pragma once
 #include "../ray.h"
+#include "../roots.h"
 #include "../sources.h"
 #include "quadratic.h"
 
+// Lengths are doubled, but for rho^2, whose root doubles.
 typedef struct {
     Quadratic rho2;
     floatv height, height_slope;
@@ -17,17 +19,17 @@ torus_path torus_along(const Ray *const ray, const Sources *const sources, const
     const float3v axis = uniform3(torus->axis);
     const float3v from_center = subtract3(ray->origin, uniform3(torus->center));
     const torus_path path = {squared_length_along(cross3(from_center, axis), cross3(ray->span, axis)),
-                             dot3(from_center, axis),
-                             dot3(ray->span, axis),
-                             torus->major_radius,
-                             ray->softening2,
-                             ray->floor2};
+                             2.0f * dot3(from_center, axis),
+                             2.0f * dot3(ray->span, axis),
+                             2.0f * torus->major_radius,
+                             4.0f * ray->softening2,
+                             4.0f * ray->floor2};
     return path;
 }
 
 floatv torus_field(const torus_path *const path, const floatv s) {
-    const floatv from_ring = sqrt(quadratic_at(&path->rho2, s)) - path->major_radius;
+    const floatv from_ring = twice_sqrt(quadratic_at(&path->rho2, s)) - path->major_radius;
     const floatv height = fma(path->height_slope, s, path->height);
     const floatv distance2 = fma(from_ring, from_ring, fma(height, height, path->softening2));
-    return inverse_sqrt(max(distance2, path->floor2));
+    return twice_inverse_sqrt(max(distance2, path->floor2));
 }

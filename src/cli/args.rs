@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use energywave::Error;
 use energywave::scene::{ImageSize, Method, Scene};
 
 /// Volumetric energy effects, integrated along every view ray on any OpenCL device.
@@ -57,7 +58,7 @@ pub struct VerifyArguments {
     #[arg(long)]
     pub rays: Option<PathBuf>,
     /// Relative error aimed at by the exact method, and allowed to it
-    #[arg(long, default_value_t = 1e-3, value_parser = tolerance)]
+    #[arg(long, default_value_t = 1e-3, value_parser = tolerance, allow_hyphen_values = true)]
     pub tolerance: f64,
     /// Print a JSON array
     #[arg(long)]
@@ -108,7 +109,7 @@ pub struct Overrides {
     #[arg(long, value_parser = divisions, allow_hyphen_values = true, requires = "scene")]
     pub divisions: Option<u32>,
     /// Relative error aimed at by the exact method
-    #[arg(long, value_parser = tolerance, requires = "scene")]
+    #[arg(long, value_parser = tolerance, allow_hyphen_values = true, requires = "scene")]
     pub tolerance: Option<f64>,
 }
 
@@ -122,7 +123,21 @@ pub enum MethodName {
 
 impl Overrides {
     /// Replaces what was typed.
-    pub fn apply(&self, scene: &mut Scene) {
+    pub fn apply(&self, scene: &mut Scene) -> Result<(), Error> {
+        if let Some(size) = self
+            .size
+            .filter(|size| size.width.max(size.height) > ImageSize::LIMIT)
+        {
+            return Err(Error::Input {
+                path: "--size".into(),
+                reason: format!(
+                    "{}x{} pixels; an image is at most {limit}x{limit}",
+                    size.width,
+                    size.height,
+                    limit = ImageSize::LIMIT
+                ),
+            });
+        }
         let integration = &mut scene.integration;
         scene.image = self.size.unwrap_or(scene.image);
         integration.divisions = self.divisions.unwrap_or(integration.divisions);
@@ -132,6 +147,7 @@ impl Overrides {
             Some(MethodName::Exact) => Method::Exact,
             None => integration.method,
         };
+        Ok(())
     }
 }
 

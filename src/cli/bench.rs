@@ -114,7 +114,7 @@ fn print_cell(cell: &Cell, is_first: bool) -> Outcome {
 
 fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     let mut scene = Scene::from_file(path)?;
-    arguments.overrides.apply(&mut scene);
+    arguments.overrides.apply(&mut scene)?;
     scene.validate()?;
     let (device, mut renderer) = prepare(arguments)?;
     let speed = measure(&mut renderer, &scene, time(arguments))?;

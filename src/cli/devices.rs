@@ -47,7 +47,6 @@ fn reason(best: &Device) -> &'static str {
     match best.device_type {
         DeviceType::Gpu => "the GPU with the most compute units",
         DeviceType::Cpu => "no GPU has an OpenCL driver, so the CPU through OpenCL",
-        DeviceType::Accelerator => "no GPU or CPU has an OpenCL driver",
-        DeviceType::Reference => "no device has an OpenCL driver",
+        _ => "no GPU or CPU has an OpenCL driver",
     }
 }

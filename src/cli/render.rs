@@ -10,7 +10,7 @@ use super::{Outcome, choose_device};
 pub fn run(arguments: RenderArguments) -> Outcome {
     OutputFormat::of(&arguments.output)?;
     let mut scene = Scene::from_file(&arguments.scene)?;
-    arguments.overrides.apply(&mut scene);
+    arguments.overrides.apply(&mut scene)?;
     scene.validate()?;
     let device = choose_device(arguments.device.device.as_deref())?;
     catch_interrupts();

@@ -59,7 +59,8 @@ impl Output {
             path: path.to_owned(),
             reason,
         };
-        if path.is_dir() {
+        let names_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
+        if path.is_dir() || names_folder {
             return Err(fail("it is a folder".to_owned()));
         }
         let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());

@@ -25,7 +25,8 @@ impl RadianceImage {
     /// [`Error::OutOfMemory`] if the host has too little memory for it.
     pub fn new(size: ImageSize) -> Result<Self> {
         let values = 4 * size.pixels();
-        let bytes = values * size_of::<f32>();
+        // The radiance, and the picture that is made of it.
+        let bytes = values * size_of::<f32>() + 3 * size.pixels();
         let too_large = |available: String| {
             Error::OutOfMemory(format!(
                 "image of {}x{} pixels: {} MiB needed{available}; make the image smaller",

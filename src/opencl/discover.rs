@@ -76,9 +76,14 @@ pub fn discover() -> Discovery {
         let names = |d: &OpenClDevice| (d.platform.clone(), d.name.clone());
         (key(a), names(a)).cmp(&(key(b), names(b)))
     });
-    let problem = devices
-        .is_empty()
-        .then(|| missing(CL_PLATFORM_NOT_FOUND_KHR));
+    let names: Vec<String> = platforms.iter().filter_map(|p| p.name().ok()).collect();
+    let problem = devices.is_empty().then(|| {
+        format!(
+            "the OpenCL driver is installed ({}) but offers no usable device; check the driver (PoCL: is its cache folder, \
+             POCL_CACHE_DIR, writable?)",
+            names.join(", ")
+        )
+    });
     Discovery { devices, problem }
 }
 

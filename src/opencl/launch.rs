@@ -43,6 +43,9 @@ impl Pace {
     /// Learns from a launch.
     pub(super) fn measured(&mut self, evaluations: f64, time: Duration) {
         let possible = evaluations * TARGET.as_secs_f64() / time.as_secs_f64().max(1e-6);
+        if evaluations == 0.0 {
+            return;
+        }
         // A launch much below the pace says more about the overhead than about the device.
         if evaluations > 0.1 * self.evaluations || possible < self.evaluations {
             self.evaluations = possible.clamp(1e4, MOST_GROWTH * self.evaluations);

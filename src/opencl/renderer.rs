@@ -40,6 +40,9 @@ struct Launched {
     evaluations: f64,
 }
 
+/// A larger output buffer would gain nothing; 8192x8192 pixels fit.
+const MOST_BAND_BYTES: u64 = 1 << 30;
+
 /// What the kernels read.
 #[derive(Debug)]
 struct Lists {
@@ -190,9 +193,7 @@ impl OpenClRenderer {
             end += band.len() as u32;
             let mut report = |pixel: u32| progress(pixel as f32 / total);
             let last = self.launch_band(job, begin..end, &mut report)?;
-            if let Some(output) = &self.output {
-                output.read(&self.compute, band)?;
-            }
+            self.output()?.read(&self.compute, band)?;
             self.settle(last)?;
         }
         Ok(())
@@ -212,10 +213,7 @@ impl OpenClRenderer {
         }
         self.begin(&job);
         let last = self.launch_band(&job, 0..pixels as u32, &mut |_| ControlFlow::Continue(()))?;
-        let Some(output) = &self.output else {
-            return Err(Error::OutOfMemory("no output buffer".to_owned()));
-        };
-        let pointer = output.map(&self.compute, pixels)?;
+        let pointer = self.output()?.map(&self.compute, pixels)?;
         self.settle(last)?;
         Ok(Mapped {
             pointer,
@@ -272,9 +270,7 @@ impl OpenClRenderer {
             Some(trace) if job.has_rays => trace,
             _ => &self.render,
         };
-        let Some(output) = &self.output else {
-            return Err(Error::OutOfMemory("no output buffer".to_owned()));
-        };
+        let output = self.output()?;
         let launch = launch(part, slot, &job.sources, job.work.node_count);
         let lists = &self.lists;
         let mut arguments: Vec<&dyn Argument> = vec![
@@ -318,11 +314,21 @@ impl OpenClRenderer {
         Ok(())
     }
 
+    /// The output buffer, which `band_len` makes.
+    fn output(&self) -> Result<&DeviceBuffer<Pixel>> {
+        self.output
+            .as_ref()
+            .ok_or_else(|| Error::OutOfMemory("there is no output buffer".to_owned()))
+    }
+
     /// Makes sure of an output buffer for `pixels` pixels, or for as many as the device's limits allow.
     fn band_len(&mut self, pixels: usize) -> Result<usize> {
         let device = &self.compute.device;
         // A quarter of the memory leaves room for the sources and for everyone else.
-        let bytes = device.max_allocation_bytes.min(device.memory_bytes / 4);
+        let bytes = device
+            .max_allocation_bytes
+            .min(device.memory_bytes / 4)
+            .min(MOST_BAND_BYTES);
         let most = (bytes as usize / size_of::<Pixel>()).max(1);
         let wanted = pixels.min(most);
         match &self.output {

@@ -12,6 +12,7 @@ macro_rules! embed {
 embed!(
     "types.h",
     "lanes.h",
+    "roots.h",
     "ray.h",
     "sources.h",
     "field/quadratic.h",

@@ -9,10 +9,19 @@ use super::{Frame, vector};
 use crate::scene::Curve;
 
 /// Below this ratio of `|C2|` to `|C'(1/2)|` a curve counts as straight: the cubic's roots would lose digits to its
-/// far-off vertex, while the kernels' foot on the tangent, corrected twice, leaves errors of the ratio's cube.
+/// far-off vertex, while the kernels' foot on the tangent needs two Newton steps.
 const STRAIGHT: f64 = 1e-3;
 
-pub(super) fn curve(frame: &Frame, curve: &Curve, spline: Range<u32>) -> layout::Curve {
+/// A folded curve runs twice through the same points: distances that differ by less than this share of its squared
+/// size are equal, and the point with less t counts.
+const TIE: f64 = 1e-6;
+
+pub(super) fn curve(
+    frame: &Frame,
+    curve: &Curve,
+    emission: [f32; 4],
+    spline: Range<u32>,
+) -> layout::Curve {
     let [b0, b1, b2] = curve.control_points;
     let c2 = b0 - 2.0 * b1 + b2;
     let middle = 0.25 * b0 + 0.5 * b1 + 0.25 * b2;
@@ -25,10 +34,11 @@ pub(super) fn curve(frame: &Frame, curve: &Curve, spline: Range<u32>) -> layout:
         .or_else(|| velocity.try_normalize().map(|v| v.any_orthonormal_vector()))
         .unwrap_or(DVec3::Y);
     let along = velocity - across * velocity.dot(across);
-    let along = if along.length() > 1e-12 * velocity.length() {
-        along.normalize()
+    let is_fold = along.length() <= 1e-12 * velocity.length();
+    let (along, velocity_along) = if is_fold {
+        (across.any_orthonormal_vector(), 0.0)
     } else {
-        across.any_orthonormal_vector()
+        (along.normalize(), along.length())
     };
     let velocity_across = velocity.dot(across);
     layout::Curve {
@@ -36,8 +46,8 @@ pub(super) fn curve(frame: &Frame, curve: &Curve, spline: Range<u32>) -> layout:
         along: vector(along),
         across: vector(across),
         normal: vector(along.cross(across)),
-        emission: frame.emission(curve.coefficient, curve.color),
-        velocity_along: velocity.dot(along) as f32,
+        emission,
+        velocity_along: velocity_along as f32,
         velocity_across: velocity_across as f32,
         bend: bend as f32,
         vertex: if is_straight {
@@ -48,7 +58,11 @@ pub(super) fn curve(frame: &Frame, curve: &Curve, spline: Range<u32>) -> layout:
         is_straight: u32::from(is_straight),
         spline_begin: spline.start,
         spline_count: spline.end - spline.start,
-        padding: 0,
+        tie: if is_fold {
+            (TIE * (bend + velocity.length()).powi(2)) as f32
+        } else {
+            0.0
+        },
     }
 }
 

@@ -63,12 +63,19 @@ impl Sources {
         };
         for curve in &scene.curves {
             let begin = packed.spline_pieces.len();
-            if let Some(series) = &curve.intensity {
-                packed.spline_pieces.extend(curve::spline_pieces(series));
+            let [b0, b1, b2] = curve.control_points;
+            let mut coefficient = curve.coefficient;
+            match curve.intensity.as_deref() {
+                // A point is nearest at t = 0, whatever the series holds beyond.
+                Some([first, ..]) if b0 == b1 && b1 == b2 => coefficient *= first,
+                Some(series) => packed.spline_pieces.extend(curve::spline_pieces(series)),
+                None => {}
             }
-            let count = packed.spline_pieces.len() - begin;
-            let spline = begin as u32..(begin + count) as u32;
-            packed.curves.push(curve::curve(&frame, curve, spline));
+            let spline = begin as u32..packed.spline_pieces.len() as u32;
+            let emission = frame.emission(coefficient, curve.color);
+            packed
+                .curves
+                .push(curve::curve(&frame, curve, emission, spline));
         }
         packed
     }

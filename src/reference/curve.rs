@@ -35,16 +35,20 @@ impl CurveField {
 
     /// Parameter of the nearest point, the least one where several are equally near, and its squared distance.
     pub fn nearest(&self, point: DVec3) -> (f64, f64) {
-        let mut best = (0.0, self.c0.distance_squared(point));
+        // A folded curve runs twice through the same points: rounding must not choose between them.
+        let tie = 1e-12 * (self.c1.length() + self.c2.length()).powi(2);
+        let mut least = self.c0.distance_squared(point);
+        let mut nearest = (0.0, least);
         let mut offer = |t: f64| {
             let distance2 = self.at(t).distance_squared(point);
-            if distance2 < best.1 {
-                best = (t, distance2);
+            least = least.min(distance2);
+            if distance2 < nearest.1 - tie {
+                nearest = (t, distance2);
             }
         };
         stationary(self.c2, self.c1, self.c0 - point, &mut offer);
         offer(1.0);
-        best
+        (nearest.0, least)
     }
 
     /// The field at a point.

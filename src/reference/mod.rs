@@ -145,39 +145,19 @@ pub(crate) fn render_into(
 ) -> Result<()> {
     let width = scene.image.width as usize;
     let plane = ViewPlane::new(&scene.camera, scene.image);
-    let sources = sources(scene);
-    let integrand = Integrand {
-        decay: scene.decay,
-        softening: scene.integration.softening,
-    };
-    let measure = match scene.integration.measure {
-        Measure::Parameter => 1.0,
-        Measure::Length => plane.ray_length,
-    };
-    let radiance = |ray: &Ray| -> DVec3 {
-        sources
-            .iter()
-            .map(|source| {
-                let integral = match method {
-                    Method::Exact => exact(&source.field, ray, &integrand),
-                    Method::Simpson => {
-                        simpson(&source.field, ray, &integrand, scene.integration.divisions)
-                    }
-                };
-                source.emission * integral * measure
-            })
-            .sum()
-    };
-    let band_rows = 16384_usize.div_ceil(width);
-    let bands = target.chunks_mut(4 * width * band_rows);
-    let band_count = bands.len();
-    for (band, pixels) in bands.enumerate() {
+    let tracer = Tracer::new(scene, method, plane.ray_length);
+    let band_len = tracer.band_len();
+    let band_count = scene.image.pixels().div_ceil(band_len);
+    for (band, pixels) in target.chunks_mut(4 * band_len).enumerate() {
         pixels
             .par_chunks_exact_mut(4)
             .enumerate()
             .for_each(|(i, pixel)| {
-                let (row, column) = (band * band_rows + i / width, i % width);
-                let light = radiance(&plane.ray(column as u32, row as u32)).as_vec3();
+                let index = band * band_len + i;
+                let (row, column) = (index / width, index % width);
+                let light = tracer
+                    .radiance(&plane.ray(column as u32, row as u32))
+                    .as_vec3();
                 pixel.copy_from_slice(&[light.x, light.y, light.z, 1.0]);
             });
         if progress((band + 1) as f32 / band_count as f32).is_break() {
@@ -185,4 +165,53 @@ pub(crate) fn render_into(
         }
     }
     Ok(())
+}
+
+/// A scene ready to be integrated along rays.
+pub(crate) struct Tracer {
+    sources: Vec<Source>,
+    integrand: Integrand,
+    method: Method,
+    divisions: u32,
+    measure: f64,
+}
+
+impl Tracer {
+    /// `ray_length` is `|E - S|`, which counts where light is measured by length.
+    pub(crate) fn new(scene: &Scene, method: Method, ray_length: f64) -> Self {
+        Self {
+            sources: sources(scene),
+            integrand: Integrand {
+                decay: scene.decay,
+                softening: scene.integration.softening,
+            },
+            method,
+            divisions: scene.integration.divisions,
+            measure: match scene.integration.measure {
+                Measure::Parameter => 1.0,
+                Measure::Length => ray_length,
+            },
+        }
+    }
+
+    /// Linear RGB along a ray.
+    pub(crate) fn radiance(&self, ray: &Ray) -> DVec3 {
+        let light = |source: &Source| {
+            let integral = match self.method {
+                Method::Exact => exact(&source.field, ray, &self.integrand),
+                Method::Simpson => simpson(&source.field, ray, &self.integrand, self.divisions),
+            };
+            source.emission * integral * self.measure
+        };
+        self.sources.iter().map(light).sum()
+    }
+
+    /// Pixels that take some tenths of a second, at 50 ns a sample.
+    fn band_len(&self) -> usize {
+        let samples = match self.method {
+            Method::Exact => 500,
+            Method::Simpson => self.divisions as usize + 1,
+        };
+        (10_000_000 / (samples * self.sources.len().max(1))).clamp(16, 16384)
+    }
 }

@@ -18,7 +18,9 @@ impl Scene {
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let text = read_text(path)?;
-        let is_json = path.extension().is_some_and(|ending| ending == "json");
+        let is_json = path
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
         let scene = if is_json {
             Self::from_json(&text)
         } else {
@@ -49,6 +51,10 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with the key; faults of the syntax have line and column too.
     pub fn from_json(text: &str) -> Result<Self> {
+        let text = text.trim_start_matches('\u{feff}');
+        if text.trim().is_empty() {
+            return Err(empty_file().into());
+        }
         let mut reader = serde_json::Deserializer::from_str(text);
         let scene: Self = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
             let key = match error.path().to_string() {
@@ -96,6 +102,9 @@ fn read_text(path: &Path) -> Result<String> {
 
 /// A fault of syntax, type or key name, as the TOML reader found it.
 fn toml_fault(text: &str, error: &toml::de::Error) -> SceneError {
+    if text.trim().is_empty() {
+        return empty_file();
+    }
     let span = error.span().unwrap_or(0..0);
     let offset = span.start;
     let key = KeyMap::new(text).path_at(&span).unwrap_or("").to_owned();
@@ -106,14 +115,21 @@ fn toml_fault(text: &str, error: &toml::de::Error) -> SceneError {
     {
         message += &format!(" `{quoted}`");
     }
-    if text.trim().is_empty() {
-        message = "the file is empty; a scene needs at least [camera] with eye and target".into();
-    }
     SceneError {
         path: None,
         position: Some(line_and_column(text, offset)),
         key,
         message,
+    }
+}
+
+fn empty_file() -> SceneError {
+    SceneError {
+        position: Some((1, 1)),
+        ..SceneError::value(
+            "camera",
+            "the file is empty; a scene needs at least [camera] with eye and target",
+        )
     }
 }
 
@@ -137,7 +153,14 @@ fn plain_words(message: &str) -> String {
         .trim()
         .replace("floating point `", "number `")
         .replace("expected f64", "expected a number")
-        .replace("expected u32", "expected a whole number, not negative")
+        .replace(
+            "expected u32",
+            "expected a whole number from 0 to 4294967295",
+        )
+        .replace(
+            "invalid type: map, expected a sequence",
+            "there may be several: write double brackets, such as [[sphere]]",
+        )
         .replace("expected struct ", "expected the table of ")
         .replace('\n', "; ")
 }

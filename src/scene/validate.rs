@@ -2,13 +2,17 @@
 
 use glam::DVec3;
 
-use super::{Camera, Curve, ImageSize, Integration, Scene};
+use super::{Camera, Curve, ImageSize, Integration, Measure, Scene};
 use crate::error::{Result, SceneError};
+use crate::reference::CORE_FLOOR;
 
 /// Largest magnitude of any number, smallest of a positive one: squares and cubes of what lies between stay finite and
 /// normal in the devices' float32.
 const LARGEST: f64 = 1e9;
 const SMALLEST: f64 = 1e-9;
+
+/// No product on the way to a pixel may exceed this: sums of up to 1e8 such lights are still finite in float32.
+const BRIGHTEST: f64 = 1e30;
 
 type Checked = std::result::Result<(), SceneError>;
 
@@ -33,28 +37,49 @@ impl Scene {
         if self.display.exposure.abs() > 100.0 {
             return fault("display.exposure", "more than 100 stops");
         }
+        let most = self.greatest_integrand();
+        if most > BRIGHTEST {
+            return fault(
+                "decay.beta",
+                format!(
+                    "alpha / beta^2 next to a core comes to {most:.0e}, more than float32 holds"
+                ),
+            );
+        }
         for (i, sphere) in self.spheres.iter().enumerate() {
             let key = |name| format!("sphere[{i}].{name}");
             vector(&key("center"), sphere.center)?;
-            light(&key, sphere.coefficient, sphere.color)?;
+            light(&key, sphere.coefficient, sphere.color, most)?;
         }
         for (i, cylinder) in self.cylinders.iter().enumerate() {
             let key = |name| format!("cylinder[{i}].{name}");
             vector(&key("point"), cylinder.point)?;
             direction(&key("direction"), cylinder.direction)?;
-            light(&key, cylinder.coefficient, cylinder.color)?;
+            light(&key, cylinder.coefficient, cylinder.color, most)?;
         }
         for (i, torus) in self.tori.iter().enumerate() {
             let key = |name| format!("torus[{i}].{name}");
             vector(&key("center"), torus.center)?;
             direction(&key("axis"), torus.axis)?;
             positive(&key("major_radius"), torus.major_radius)?;
-            light(&key, torus.coefficient, torus.color)?;
+            light(&key, torus.coefficient, torus.color, most)?;
         }
         for (i, curve) in self.curves.iter().enumerate() {
-            check_curve(i, curve)?;
+            check_curve(i, curve, most)?;
         }
         Ok(())
+    }
+
+    /// The greatest value that decay times field times measure can take, on a ray through a core.
+    fn greatest_integrand(&self) -> f64 {
+        let decay = self.decay.map_or(1.0, |decay| decay.at(0.0));
+        let length = self.camera.ray_length();
+        let least_distance = (CORE_FLOOR * length).max(self.integration.softening);
+        let measure = match self.integration.measure {
+            Measure::Parameter => 1.0,
+            Measure::Length => length,
+        };
+        decay / least_distance * measure.max(1.0)
     }
 }
 
@@ -63,11 +88,8 @@ fn check_camera(camera: &Camera) -> Checked {
     vector("camera.target", camera.target)?;
     direction("camera.up", camera.up)?;
     finite("camera.fov_y", camera.fov_y)?;
-    if !(0.001..180.0).contains(&camera.fov_y) {
-        return fault(
-            "camera.fov_y",
-            "must lie between 0.001 and 180 degrees, 180 excluded",
-        );
+    if !(0.001..=179.9).contains(&camera.fov_y) {
+        return fault("camera.fov_y", "must lie between 0.001 and 179.9 degrees");
     }
     positive("camera.near", camera.near)?;
     let view = camera.target - camera.eye;
@@ -132,12 +154,14 @@ fn check_integration(integration: &Integration) -> Checked {
     Ok(())
 }
 
-fn check_curve(index: usize, curve: &Curve) -> Checked {
+fn check_curve(index: usize, curve: &Curve, most: f64) -> Checked {
     let key = |name| format!("curve[{index}].{name}");
     for (k, point) in curve.control_points.iter().enumerate() {
         vector(&format!("curve[{index}].control_points[{k}]"), *point)?;
     }
-    light(&key, curve.coefficient, curve.color)?;
+    let series = curve.intensity.iter().flatten();
+    let strongest = series.fold(1.0_f64, |most, value| most.max(value.abs()));
+    light(&key, curve.coefficient, curve.color, most * strongest)?;
     if let Some(series) = &curve.intensity {
         if series.len() < 3 {
             return fault(
@@ -155,9 +179,23 @@ fn check_curve(index: usize, curve: &Curve) -> Checked {
     Ok(())
 }
 
-fn light(key: &impl Fn(&'static str) -> String, coefficient: f64, color: DVec3) -> Checked {
+/// `most` is the greatest integrand that meets this light.
+fn light(
+    key: &impl Fn(&'static str) -> String,
+    coefficient: f64,
+    color: DVec3,
+    most: f64,
+) -> Checked {
     finite(&key("coefficient"), coefficient)?;
-    vector(&key("color"), color)
+    vector(&key("color"), color)?;
+    let brightest = most * coefficient.abs() * color.abs().max_element();
+    if brightest > BRIGHTEST {
+        return fault(
+            key("coefficient"),
+            format!("next to the core the light comes to {brightest:.0e}, more than float32 holds"),
+        );
+    }
+    Ok(())
 }
 
 fn fault(key: impl Into<String>, message: impl Into<String>) -> Checked {
@@ -203,7 +241,10 @@ fn direction(key: &str, value: DVec3) -> Checked {
     if value.length() < SMALLEST {
         return fault(
             key,
-            "the zero vector has no direction; give one such as [0.0, 0.0, 1.0]",
+            format!(
+                "a vector shorter than {SMALLEST:e}, such as the zero vector, has no direction; give one such as \
+                 [0.0, 0.0, 1.0]"
+            ),
         );
     }
     Ok(())
