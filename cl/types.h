@@ -75,7 +75,7 @@ typedef struct {
     uint is_straight;  // 1: so straight that the cubic for the nearest point degenerates
     uint spline_begin; // first of its pieces in the list of spline pieces
     uint spline_count; // pieces of its local-intensity series; 0: intensity 1
-    float tie;         // squared distances that differ by less are equal
+    uint padding;
 } Curve;
 
 // One piece of a quadratic B-spline: S = c0 + c1 x + c2 x^2, x in [0,1] over the piece.

@@ -26,7 +26,7 @@ floatv linear_at(const Linear l, const floatv s) {
 typedef struct {
     Linear along, across, normal; // P in the curve's frame, from C(1/2)
     Linear p, h;                  // of the cubic u^3 + 3 p u + 2 h = 0 for u = t - 1/2 + vertex
-    float velocity_along, velocity_across, bend, vertex, tie;
+    float velocity_along, velocity_across, bend, vertex;
     float inverse_speed2; // 1 / |C'(1/2)|^2, 0 for a point
     uint is_straight, spline_count;
     __global const SplinePiece *pieces;
@@ -45,7 +45,6 @@ curve_path curve_along(const Ray *const ray, const Sources *const sources, const
     path.velocity_across = 2.0f * curve->velocity_across;
     path.bend = 2.0f * curve->bend;
     path.vertex = curve->vertex;
-    path.tie = 4.0f * curve->tie;
     path.is_straight = curve->is_straight;
     path.spline_count = curve->spline_count;
     path.pieces = sources->spline_pieces + curve->spline_begin;
@@ -118,7 +117,7 @@ floatv nearest_on_curve(const curve_path *const path, const floatv s, floatv *co
         const floatv to_first = curve_distance2(path, along, across, normal, first);
         const floatv to_second = curve_distance2(path, along, across, normal, second);
         *distance2 = select(*distance2, min(to_first, to_second), has_three);
-        nearest = select(nearest, select(first, second, to_second < to_first - path->tie), has_three);
+        nearest = select(nearest, select(first, second, to_second < to_first), has_three);
     }
     return nearest;
 }

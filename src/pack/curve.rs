@@ -12,10 +12,6 @@ use crate::scene::Curve;
 /// far-off vertex, while the kernels' foot on the tangent needs two Newton steps.
 const STRAIGHT: f64 = 1e-3;
 
-/// A folded curve runs twice through the same points: distances that differ by less than this share of its squared
-/// size are equal, and the point with less t counts.
-const TIE: f64 = 1e-6;
-
 pub(super) fn curve(
     frame: &Frame,
     curve: &Curve,
@@ -34,6 +30,7 @@ pub(super) fn curve(
         .or_else(|| velocity.try_normalize().map(|v| v.any_orthonormal_vector()))
         .unwrap_or(DVec3::Y);
     let along = velocity - across * velocity.dot(across);
+    // Exactly 0 on a fold, which runs twice through the same points: equal distances then stay equal.
     let is_fold = along.length() <= 1e-12 * velocity.length();
     let (along, velocity_along) = if is_fold {
         (across.any_orthonormal_vector(), 0.0)
@@ -58,11 +55,7 @@ pub(super) fn curve(
         is_straight: u32::from(is_straight),
         spline_begin: spline.start,
         spline_count: spline.end - spline.start,
-        tie: if is_fold {
-            (TIE * (bend + velocity.length()).powi(2)) as f32
-        } else {
-            0.0
-        },
+        padding: 0,
     }
 }
 

@@ -109,7 +109,7 @@ device_structs! {
         is_straight: u32 = 96,
         spline_begin: u32 = 100,
         spline_count: u32 = 104,
-        tie: f32 = 108,
+        padding: u32 = 108,
     }
     /// One piece of a quadratic B-spline.
     SplinePiece [16] {
