@@ -11,7 +11,7 @@ __kernel void render(const View view, const Launch launch, __global const Node *
     if (begin >= launch.count)
         return;
     const Sources sources = {spheres, cylinders, tori, curves, spline_pieces};
-    const Ray ray = pixel_ray(&view, launch.first + begin + LANE_NUMBERS);
+    const Ray ray = pixel_ray(&view, launch.first + begin);
     const float3v radiance = radiance_along(&ray, &sources, nodes, &launch);
     store_pixels(image + launch.slot + begin, LAST_LANES(launch.count - begin), radiance, launch.accumulate);
 }

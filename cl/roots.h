@@ -23,18 +23,18 @@
 #endif
 #endif
 
-// 2 / sqrt(x) and 2 sqrt(x) for normal x > 0. Twice, because the Newton step y (3 - x y^2) gives that: with all lengths
-// doubled beforehand it saves a multiplication a root.
+// 2 / sqrt(x) and 2 sqrt(x) - offset for normal x > 0. Twice, because the Newton step y (3 - x y^2) gives that: with
+// all lengths doubled beforehand it saves a multiplication a root.
 #ifdef estimate_inverse_sqrt
 floatv twice_inverse_sqrt_(const floatv x) {
     const floatv y = estimate_inverse_sqrt(x);
     return y * fma(-x * y, y, splat(3.0f));
 }
 
-floatv twice_sqrt(const floatv x) {
+floatv twice_sqrt_less(const floatv x, const floatv offset) {
     const floatv y = estimate_inverse_sqrt(x);
     const floatv xy = x * y;
-    return xy * fma(-xy, y, splat(3.0f));
+    return fma(xy, fma(-xy, y, splat(3.0f)), -offset);
 }
 
 floatv inverse(const floatv x) {
@@ -46,14 +46,18 @@ floatv twice_inverse_sqrt_(const floatv x) {
     return 2.0f * rsqrt(x);
 }
 
-floatv twice_sqrt(const floatv x) {
-    return 2.0f * sqrt(x);
+floatv twice_sqrt_less(const floatv x, const floatv offset) {
+    return fma(sqrt(x), splat(2.0f), -offset);
 }
 
 floatv inverse(const floatv x) {
     return 1.0f / x;
 }
 #endif
+
+floatv twice_sqrt(const floatv x) {
+    return twice_sqrt_less(x, splat(0.0f));
+}
 
 // A build option may put another form in its place.
 #ifndef twice_inverse_sqrt

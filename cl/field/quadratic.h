@@ -2,6 +2,7 @@
 // (slope s + offset)^2 + least, in which nothing cancels near the least distance.
 #pragma once
 #include "../lanes.h"
+#include "../roots.h"
 
 typedef struct {
     floatv slope;
@@ -11,9 +12,9 @@ typedef struct {
 
 // |start + s span|^2
 Quadratic squared_length_along(const float3v start, const float3v span) {
-    const floatv span2 = dot3(span, span);
-    const floatv slope = sqrt(span2);
-    const floatv nearest = select(-dot3(start, span) / span2, splat(0.0f), span2 < 1e-36f);
+    const floatv span2 = max(dot3(span, span), 1e-36f);
+    const floatv slope = 0.5f * twice_sqrt(span2);
+    const floatv nearest = -dot3(start, span) * inverse(span2);
     const float3v closest = fma3(span, nearest, start);
     const Quadratic q = {slope, -slope * nearest, max(dot3(closest, closest), 1e-30f)};
     return q;

@@ -28,7 +28,7 @@ torus_path torus_along(const Ray *const ray, const Sources *const sources, const
 }
 
 floatv torus_field(const torus_path *const path, const floatv s) {
-    const floatv from_ring = twice_sqrt(quadratic_at(&path->rho2, s)) - path->major_radius;
+    const floatv from_ring = twice_sqrt_less(quadratic_at(&path->rho2, s), splat(path->major_radius));
     const floatv height = fma(path->height_slope, s, path->height);
     const floatv distance2 = fma(from_ring, from_ring, fma(height, height, path->softening2));
     return twice_inverse_sqrt(max(distance2, path->floor2));

@@ -4,10 +4,11 @@ use std::ffi::c_void;
 use std::ptr;
 
 use bytemuck::Pod;
+use opencl3::event::Event;
 use opencl3::memory::{
     Buffer, CL_MAP_READ, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE, ClMem,
 };
-use opencl3::types::{CL_TRUE, cl_mem};
+use opencl3::types::{CL_FALSE, CL_TRUE, cl_mem};
 
 use super::Compute;
 use super::failure::failed;
@@ -160,7 +161,9 @@ impl<T: Pod> DeviceBuffer<T> {
 pub struct Uploaded<T> {
     what: &'static str,
     buffer: Option<DeviceBuffer<T>>,
+    /// What the device has, or is about to have: a copy that is under way reads from here.
     contents: Vec<T>,
+    under_way: Option<Event>,
 }
 
 impl<T: Pod + PartialEq> Uploaded<T> {
@@ -170,26 +173,41 @@ impl<T: Pod + PartialEq> Uploaded<T> {
             what,
             buffer: None,
             contents: Vec::new(),
+            under_way: None,
         }
     }
 
-    /// Makes the device's list equal to `data`.
+    /// Makes the device's list equal to `data`, before the next command of the queue begins. It does not wait for that:
+    /// a wait costs a frame 45 us on PoCL 3.1.
     ///
     /// # Errors
     /// As [`DeviceBuffer::new`] and [`DeviceBuffer::write`].
     pub fn upload(&mut self, compute: &Compute, data: &[T]) -> Result<()> {
-        let fits = |buffer: &DeviceBuffer<T>| buffer.len() >= data.len();
         if self.contents == data && self.buffer.is_some() {
             return Ok(());
         }
-        let mut buffer = match self.buffer.take() {
-            Some(buffer) if fits(&buffer) => buffer,
-            _ => DeviceBuffer::with_flags(compute, self.what, data.len(), CL_MEM_READ_ONLY)?,
-        };
-        buffer.write(compute, data)?;
-        self.buffer = Some(buffer);
+        self.wait();
         self.contents.clear();
         self.contents.extend_from_slice(data);
+        let buffer = match self.buffer.take() {
+            Some(buffer) if buffer.len() >= data.len() => buffer,
+            _ => DeviceBuffer::with_flags(compute, self.what, data.len(), CL_MEM_READ_ONLY)?,
+        };
+        let buffer = self.buffer.insert(buffer);
+        if !data.is_empty() {
+            // SAFETY: the data fits into the buffer; `contents` is neither changed nor freed before `wait`.
+            let event = unsafe {
+                compute.queue.enqueue_write_buffer(
+                    &mut buffer.buffer,
+                    CL_FALSE,
+                    0,
+                    &self.contents,
+                    &[],
+                )
+            };
+            let name = &compute.device.name;
+            self.under_way = Some(event.map_err(failed(name, "clEnqueueWriteBuffer"))?);
+        }
         Ok(())
     }
 
@@ -198,5 +216,21 @@ impl<T: Pod + PartialEq> Uploaded<T> {
         self.buffer
             .as_ref()
             .map_or(ptr::null_mut(), DeviceBuffer::handle)
+    }
+}
+
+impl<T> Uploaded<T> {
+    /// Waits for a copy that still reads `contents`.
+    fn wait(&mut self) {
+        if let Some(event) = self.under_way.take() {
+            // A copy that failed fails the commands after it too, where it is reported.
+            let _ = event.wait();
+        }
+    }
+}
+
+impl<T> Drop for Uploaded<T> {
+    fn drop(&mut self) {
+        self.wait();
     }
 }
