@@ -2,6 +2,7 @@
 // one ray; floatv, intv and uintv hold one value for each lane, float3v a vector of space for each.
 #pragma once
 
+#define INLINE __attribute__((always_inline))
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 

@@ -19,8 +19,8 @@
 #undef FIELD
 
 // Linear RGB of the sources that a launch names, a ray in every lane.
-float3v radiance_along(const Ray *const ray, const Sources *const sources, __global const Node *const nodes,
-                       const Launch *const launch) {
+INLINE float3v radiance_along(const Ray *const ray, const Sources *const sources, __global const Node *const nodes,
+                              const Launch *const launch) {
     float3v radiance = uniform3((float4)(0.0f));
     for (uint i = launch->sphere_begin; i < launch->sphere_end; ++i) {
         const floatv integral = simpson_sphere(ray, sources, i, nodes, launch->node_count);

@@ -97,7 +97,7 @@ floatv nearest_on_straight(const curve_path *const path, const floatv along, con
 
 // x = t* - 1/2 of the nearest point, and its squared distance. The middle root of three is a greatest distance; the
 // outer ones, clamped to the curve, stand for its ends too. Of two equally near points the one with less t wins.
-floatv nearest_on_curve(const curve_path *const path, const floatv s, floatv *const distance2) {
+INLINE floatv nearest_on_curve(const curve_path *const path, const floatv s, floatv *const distance2) {
     const floatv along = linear_at(path->along, s);
     const floatv across = linear_at(path->across, s);
     const floatv normal = linear_at(path->normal, s);
@@ -122,7 +122,7 @@ floatv nearest_on_curve(const curve_path *const path, const floatv s, floatv *co
     return nearest;
 }
 
-floatv curve_field(const curve_path *const path, const floatv s) {
+INLINE floatv curve_field(const curve_path *const path, const floatv s) {
     floatv distance2;
     const floatv x = nearest_on_curve(path, s, &distance2);
     const floatv field = twice_inverse_sqrt(max(distance2 + path->softening2, path->floor2));

@@ -6,8 +6,8 @@
 #define SIMPSON_BLOCK 256u
 #endif
 
-floatv JOIN(simpson_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
-                             __global const Node *const nodes, const uint node_count) {
+INLINE floatv JOIN(simpson_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
+                                    __global const Node *const nodes, const uint node_count) {
     const JOIN(FIELD, _path) path = JOIN(FIELD, _along)(ray, sources, index);
     floatv integral = splat(0.0f);
     for (uint begin = 0; begin < node_count; begin += SIMPSON_BLOCK) {
