@@ -39,10 +39,12 @@ INLINE void store_all_pixels(__global float4 *const pixels, const float3v color)
 
 // Writes (or adds to) pixels[0 .. count), count at most LANES.
 INLINE void store_pixels(__global float4 *const pixels, const uint count, const float3v color, const uint accumulate) {
+#ifndef NO_SHUFFLES
     if (count == LANES && !accumulate) {
         store_all_pixels(pixels, color);
         return;
     }
+#endif
     float red[LANES], green[LANES], blue[LANES];
     scatter(color.x, red);
     scatter(color.y, green);

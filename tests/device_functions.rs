@@ -62,7 +62,7 @@ impl Bench {
             .collect();
         let items = count / self.program.lanes as usize;
         self.program
-            .run(&self.compute, kernel, &arguments, items)
+            .run(&self.compute, kernel, &arguments, items, 1)
             .unwrap();
         let read = |buffer: &DeviceBuffer<f32>| {
             let mut values = vec![0.0; count];

@@ -169,6 +169,24 @@ fn every_lane_width_gives_the_same_image() {
 }
 
 #[test]
+fn the_portable_forms_give_the_same_image() {
+    let scene = full_scene(53, 19);
+    let expected = reference::render_simpson(&scene).unwrap();
+    for lanes in LANE_WIDTHS {
+        let native = renderer(lanes, "").render(&scene).unwrap();
+        for form in ["-DPORTABLE_ROOTS", "-DNO_SHUFFLES -DINLINE="] {
+            let image = renderer(lanes, form).render(&scene).unwrap();
+            let found = difference(&image, &expected);
+            assert!(found.max < WORST_PIXEL, "{lanes} lanes, {form}: {found:?}");
+            assert!(
+                difference(&image, &native).max < ROUNDING,
+                "{lanes} lanes, {form}"
+            );
+        }
+    }
+}
+
+#[test]
 fn two_runs_are_equal_to_the_bit_and_two_scenes_are_not() {
     let scene = full_scene(53, 19);
     let mut renderer = renderer(common::device().lanes, "");
@@ -442,6 +460,7 @@ fn marks_left(lanes: u32, extra: &str, width: u32, height: u32) -> usize {
             ],
             // More work-items than pixels, as padded work-groups have.
             pixels.div_ceil(lanes as usize) + 3,
+            1,
         )
         .unwrap();
     let mut read = vec![[0.0_f32; 4]; pixels + MARKS];

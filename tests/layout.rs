@@ -40,7 +40,7 @@ fn words_by_name(layout: &StructLayout) -> Vec<u32> {
     let program =
         Program::build_text(&compute, "copy_fields.cl", &text, &common::options(1, "")).unwrap();
     program
-        .run(&compute, "copy_fields", &[&input, &output], 1)
+        .run(&compute, "copy_fields", &[&input, &output], 1, 1)
         .unwrap();
     let mut words = vec![0; count];
     output.read(&compute, &mut words).unwrap();

@@ -66,8 +66,10 @@ fn the_reference_notices_a_ray_moved_by_a_millionth() {
 #[test]
 fn the_device_meets_the_known_simpson_sums_on_every_lane_width() {
     for lanes in common::LANE_WIDTHS {
-        for row in through(&mut common::renderer(lanes, ""), Method::Simpson) {
-            assert!(row.passes(), "{lanes} lanes: {row:?}");
+        for roots in ["", "-DPORTABLE_ROOTS"] {
+            for row in through(&mut common::renderer(lanes, roots), Method::Simpson) {
+                assert!(row.passes(), "{lanes} lanes, {roots}: {row:?}");
+            }
         }
     }
 }

@@ -193,8 +193,8 @@ pub(super) fn run_time(compute: &Compute, event: &Event) -> Result<Duration> {
 }
 
 impl Program {
-    /// Runs one of its kernels over `items` work-items one by one, and waits for it. For tests of single device
-    /// functions.
+    /// Runs one of its kernels over `items` work-items, in groups of `group`, and waits for it: how long the device
+    /// worked. For tests of single device functions and for comparisons.
     ///
     /// # Errors
     /// [`Error::Device`] if an argument or the launch is refused.
@@ -204,11 +204,10 @@ impl Program {
         kernel: &str,
         arguments: &[&dyn Argument],
         items: usize,
-    ) -> Result<()> {
+        group: usize,
+    ) -> Result<Duration> {
         let kernel = self.kernel(kernel)?;
         set_arguments(compute, &kernel, arguments)?;
-        enqueue(compute, &kernel, items, 1)?
-            .wait()
-            .map_err(failed(&compute.device.name, "clWaitForEvents"))
+        run_time(compute, &enqueue(compute, &kernel, items, group)?)
     }
 }

@@ -1,0 +1,113 @@
+//! Criterion benches: a frame by resolution and divisions, by kind and number of sources; packing; reading back against
+//! mapping. `cargo bench --bench frame`
+#![allow(missing_docs)] // criterion's macros make undocumented functions
+#![allow(clippy::unwrap_used)] // a bench that fails stops
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use energywave::bench::{DIVISIONS, RESOLUTIONS, Table, turned};
+use energywave::pack::Sources;
+use energywave::ray::ViewPlane;
+use energywave::scene::{Sphere, Torus};
+use energywave::{Device, Renderer, Scene};
+use glam::DVec3;
+
+fn renderer() -> Renderer {
+    let choice = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned());
+    Renderer::new(&Device::select(&choice).unwrap()).unwrap()
+}
+
+/// The tables' cells, a new camera for every frame, the image mapped.
+fn tables(criterion: &mut Criterion) {
+    let mut renderer = renderer();
+    for table in [Table::Torus, Table::Bezier] {
+        let mut group = criterion.benchmark_group(table.field());
+        for resolution in RESOLUTIONS {
+            for divisions in DIVISIONS {
+                let scene = table.scene(resolution, divisions);
+                let samples = u64::from(resolution * resolution) * u64::from(divisions + 1);
+                group.throughput(Throughput::Elements(samples));
+                let name = BenchmarkId::new(resolution.to_string(), divisions);
+                let mut frame = 0;
+                group.bench_function(name, |bencher| {
+                    bencher.iter(|| {
+                        frame += 1;
+                        renderer.render_mapped(&turned(&scene, frame)).unwrap()[0]
+                    });
+                });
+            }
+        }
+    }
+}
+
+/// A scene of the tables' geometry with many sources inside a ball, in place of its own.
+fn crowd(is_torus: bool, count: u32) -> Scene {
+    let mut scene = Table::Torus.scene(128, 64);
+    scene.tori.clear();
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut point = || DVec3::from([0; 3].map(|_| 2.0 * random.f64() - 1.0));
+    for _ in 0..count {
+        if is_torus {
+            scene.tori.push(Torus {
+                center: point(),
+                axis: point() + DVec3::Z,
+                major_radius: 0.5,
+                coefficient: 1.0,
+                color: DVec3::ONE,
+            });
+        } else {
+            scene.spheres.push(Sphere {
+                center: point(),
+                ..Sphere::default()
+            });
+        }
+    }
+    scene
+}
+
+fn sources(criterion: &mut Criterion) {
+    let mut renderer = renderer();
+    for (kind, is_torus) in [("tori", true), ("spheres", false)] {
+        let mut group = criterion.benchmark_group(kind);
+        for count in [1, 16, 256] {
+            let scene = crowd(is_torus, count);
+            group.throughput(Throughput::Elements(u64::from(count)));
+            group.bench_function(count.to_string(), |bencher| {
+                bencher.iter(|| renderer.render_mapped(&scene).unwrap()[0]);
+            });
+        }
+    }
+}
+
+fn packing(criterion: &mut Criterion) {
+    let scene = crowd(false, 4096);
+    let plane = ViewPlane::new(&scene.camera, scene.image);
+    criterion.bench_function("pack 4096 spheres", |bencher| {
+        bencher.iter(|| black_box(Sources::new(&scene, plane.eye, plane.ray_length)));
+    });
+}
+
+fn read_back(criterion: &mut Criterion) {
+    let mut renderer = renderer();
+    let mut group = criterion.benchmark_group("a frame of 2 divisions at 512x512");
+    let scene = Table::Torus.scene(512, 2);
+    let mut target = vec![0.0; 4 * scene.image.pixels()];
+    group.bench_function("read back", |bencher| {
+        bencher.iter(|| renderer.render_into(&scene, &mut target).unwrap());
+    });
+    group.bench_function("mapped", |bencher| {
+        bencher.iter(|| renderer.render_mapped(&scene).unwrap()[0]);
+    });
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(1));
+    targets = tables, sources, packing, read_back
+}
+criterion_main!(benches);

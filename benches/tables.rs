@@ -1,0 +1,256 @@
+//! The paper's Tables 2 and 3: ours, the paper's, and the plain transcription `benches/plain.cl`, in one run.
+//!
+//! `cargo bench --bench tables` prints them; `cargo bench --bench tables -- benches/results/NAME` also writes NAME.md, a
+//! record with machine, device, driver and command, and NAME.svg, frames a second against evaluations a frame.
+#![allow(clippy::unwrap_used)] // a bench that fails stops
+
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+use energywave::bench::{DIVISIONS, FRAMES_PER_TURN, RESOLUTIONS, Table, measure, turned};
+use energywave::opencl::{BuildOptions, Compute, DeviceBuffer, OpenClDevice, Program, discover};
+use energywave::pack::{self, layout};
+use energywave::ray::ViewPlane;
+use energywave::{Device, Renderer, Scene};
+use glam::DVec3;
+use plotters::prelude::*;
+
+const TIME: Duration = Duration::from_secs(1);
+
+struct Cell {
+    table: Table,
+    resolution: u32,
+    divisions: u32,
+    ours: f64,
+    plain: f64,
+    paper: f64,
+}
+
+impl Cell {
+    fn evaluations(&self) -> f64 {
+        f64::from(self.resolution * self.resolution) * f64::from(self.divisions + 1)
+    }
+}
+
+fn main() {
+    let choice = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned());
+    let device = Device::select(&choice).unwrap();
+    let opencl: OpenClDevice = discover()
+        .devices
+        .into_iter()
+        .find(|d| d.name == device.name)
+        .unwrap();
+    let mut renderer = Renderer::new(&device).unwrap();
+    let mut cells = Vec::new();
+    for table in [Table::Torus, Table::Bezier] {
+        let plain = Plain::new(&opencl, table);
+        for (row, resolution) in RESOLUTIONS.into_iter().enumerate() {
+            for (column, divisions) in DIVISIONS.into_iter().enumerate() {
+                let scene = table.scene(resolution, divisions);
+                cells.push(Cell {
+                    table,
+                    resolution,
+                    divisions,
+                    ours: measure(&mut renderer, &scene, TIME).unwrap().fps,
+                    plain: plain.fps(&scene),
+                    paper: table.paper_fps()[row][column],
+                });
+            }
+        }
+    }
+    let text = record(&device, &cells);
+    println!("{text}");
+    if let Some(stem) = std::env::args().skip(1).find(|a| !a.starts_with("--")) {
+        std::fs::write(format!("{stem}.md"), &text).unwrap();
+        plot(&format!("{stem}.svg"), &cells);
+    }
+}
+
+/// The plain kernel and its buffers.
+struct Plain {
+    compute: Compute,
+    program: Program,
+}
+
+impl Plain {
+    fn new(device: &OpenClDevice, table: Table) -> Self {
+        let compute = Compute::new(device).unwrap();
+        let options = BuildOptions {
+            lanes: Some(1),
+            extra: format!("-DIS_TORUS={}", u8::from(table == Table::Torus)),
+        };
+        let text = include_str!("plain.cl");
+        let program = Program::build_text(&compute, "benches/plain.cl", text, &options).unwrap();
+        Self { compute, program }
+    }
+
+    /// Frames a second by the median time of whole frames, read-back included, as [`measure`] does.
+    fn fps(&self, scene: &Scene) -> f64 {
+        let pixels = scene.image.pixels();
+        let mut image = vec![[0.0_f32; 4]; pixels];
+        let output = DeviceBuffer::new(&self.compute, "the image", pixels).unwrap();
+        let mut source = DeviceBuffer::new(&self.compute, "the source", 12).unwrap();
+        let launch = layout::Launch {
+            count: pixels as u32,
+            node_count: scene.integration.divisions + 1,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let mut render = |frame: u32| {
+            let scene = turned(scene, frame);
+            let plane = ViewPlane::new(&scene.camera, scene.image);
+            let view = pack::view(&plane, scene.image.width, 0.0);
+            source
+                .write(&self.compute, &parameters(&scene, plane.eye))
+                .unwrap();
+            self.program
+                .run(
+                    &self.compute,
+                    "plain",
+                    &[&view, &launch, &source, &output],
+                    pixels,
+                    64,
+                )
+                .unwrap();
+            output.read(&self.compute, &mut image).unwrap();
+        };
+        render(0);
+        let mut times = Vec::new();
+        let begun = Instant::now();
+        while begun.elapsed() < TIME || times.len() < 3 {
+            let frame_begun = Instant::now();
+            render(times.len() as u32 % FRAMES_PER_TURN);
+            times.push(frame_begun.elapsed());
+        }
+        times.sort();
+        1.0 / times[times.len() / 2].as_secs_f64()
+    }
+}
+
+/// What `benches/plain.cl` reads: the source seen from the eye, coefficient, alpha, beta.
+fn parameters(scene: &Scene, eye: DVec3) -> Vec<f32> {
+    let decay = scene.decay.unwrap();
+    let mut values: Vec<f64> = Vec::new();
+    for torus in &scene.tori {
+        values.extend((torus.center - eye).to_array());
+        values.extend([torus.major_radius, torus.coefficient]);
+    }
+    for curve in &scene.curves {
+        for point in curve.control_points {
+            values.extend((point - eye).to_array());
+        }
+        values.push(curve.coefficient);
+    }
+    values.extend([decay.alpha, decay.beta]);
+    values.into_iter().map(|value| value as f32).collect()
+}
+
+fn record(device: &Device, cells: &[Cell]) -> String {
+    let mut text = String::new();
+    let cpu = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = cpu.lines().find(|line| line.starts_with("model name"));
+    let _ = writeln!(
+        text,
+        "Frames a second, whole frames with the image in host memory, a new camera for every frame.\n\n\
+         * device: {}, {} compute units, {} lanes\n* platform: {}, {}, driver {}\n* processor: {}\n\
+         * command: `cargo bench --bench tables`\n* the paper's device: AMD FirePro D500\n",
+        device.name,
+        device.compute_units,
+        device.lanes,
+        device.platform,
+        device.version,
+        device.driver,
+        model.map_or("unknown", |line| line
+            .split(':')
+            .nth(1)
+            .unwrap_or("")
+            .trim())
+    );
+    for table in [Table::Torus, Table::Bezier] {
+        let _ = writeln!(
+            text,
+            "Table {}, {}\n\n| image | divisions | ours | paper | ours / paper | plain.cl | ours / plain |\n\
+             |---|---|---|---|---|---|---|",
+            table.number(),
+            table.field()
+        );
+        for cell in cells.iter().filter(|cell| cell.table == table) {
+            let _ = writeln!(
+                text,
+                "| {0}x{0} | {1} | {2:.1} | {3:.2} | {4:.1} | {5:.2} | {6:.1} |",
+                cell.resolution,
+                cell.divisions,
+                cell.ours,
+                cell.paper,
+                cell.ours / cell.paper,
+                cell.plain,
+                cell.ours / cell.plain
+            );
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Frames a second against evaluations a frame, both logarithmic.
+fn plot(path: &str, cells: &[Cell]) {
+    let area = SVGBackend::new(path, (720, 440)).into_drawing_area();
+    area.fill(&WHITE).unwrap();
+    let mut chart = ChartBuilder::on(&area)
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(56)
+        .build_cartesian_2d((1e6..1e8_f64).log_scale(), (0.1..1e4_f64).log_scale())
+        .unwrap();
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .x_desc("field evaluations a frame")
+        .y_desc("frames a second")
+        .x_label_formatter(&|x| format!("{x:.0e}"))
+        .y_label_formatter(&|y| format!("{y}"))
+        .draw()
+        .unwrap();
+    type Series = (&'static str, fn(&Cell) -> f64, [RGBColor; 2]);
+    let series: [Series; 3] = [
+        (
+            "ours",
+            |cell| cell.ours,
+            [RGBColor(20, 70, 200), RGBColor(90, 150, 255)],
+        ),
+        (
+            "paper",
+            |cell| cell.paper,
+            [RGBColor(180, 60, 20), RGBColor(240, 150, 80)],
+        ),
+        (
+            "plain.cl",
+            |cell| cell.plain,
+            [RGBColor(90, 90, 90), RGBColor(170, 170, 170)],
+        ),
+    ];
+    for (name, value, colors) in series {
+        for (table, color) in [Table::Torus, Table::Bezier].into_iter().zip(colors) {
+            let mut points: Vec<(f64, f64)> = cells
+                .iter()
+                .filter(|cell| cell.table == table)
+                .map(|cell| (cell.evaluations(), value(cell)))
+                .collect();
+            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let line = LineSeries::new(points, color.stroke_width(2)).point_size(3);
+            chart
+                .draw_series(line)
+                .unwrap()
+                .label(format!("{name}, {}", table.field()))
+                .legend(move |(x, y)| {
+                    PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3))
+                });
+        }
+    }
+    chart
+        .configure_series_labels()
+        .background_style(WHITE.mix(0.8))
+        .border_style(BLACK.mix(0.3))
+        .draw()
+        .unwrap();
+    area.present().unwrap();
+}

@@ -1,0 +1,150 @@
+//! The speed tables' frames are images like any other, and `energywave bench` says what it measured.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::process::Command;
+use std::time::Duration;
+
+use energywave::bench::{DIVISIONS, RESOLUTIONS, Table, measure, turned};
+use energywave::image::compare;
+use energywave::{RadianceImage, reference};
+use serde_json::Value;
+
+/// As in tests/images.rs: a sample next to a core outweighs the ray's others and has few float32 digits.
+const WORST_PIXEL: f64 = 5e-4;
+
+#[test]
+fn every_cells_frames_match_the_float64_simpson_rule() {
+    let mut renderer = common::renderer(common::device().lanes, "");
+    for table in [Table::Torus, Table::Bezier] {
+        for (resolution, divisions) in [(128, 64), (128, 256), (256, 64)] {
+            for frame in [0, 7, 40] {
+                let scene = turned(&table.scene(resolution, divisions), frame);
+                let image = renderer.render(&scene).unwrap();
+                let found = common::difference(&image, &reference::render_simpson(&scene).unwrap());
+                assert!(
+                    found.max < WORST_PIXEL,
+                    "{table:?} {resolution} {divisions}: {found:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_measured_frame_is_the_one_it_names() {
+    let mut renderer = common::renderer(common::device().lanes, "");
+    let scene = Table::Torus.scene(64, 20);
+    let speed = measure(&mut renderer, &scene, Duration::from_millis(20)).unwrap();
+    assert_eq!(
+        speed.image,
+        renderer.render(&turned(&scene, speed.frame)).unwrap()
+    );
+    assert_ne!(
+        speed.image,
+        renderer.render(&turned(&scene, speed.frame + 1)).unwrap()
+    );
+    assert_eq!(speed.cost.evaluations, 64 * 64);
+    assert_eq!(speed.cost.field_evaluations, 64 * 64 * 21);
+    assert!(speed.kernel > Duration::ZERO && speed.kernel.as_secs_f64() < 1.5 / speed.fps);
+}
+
+#[test]
+fn mapped_read_and_returned_images_are_the_same() {
+    let mut renderer = common::renderer(common::device().lanes, "");
+    let scene = common::full_scene(37, 11);
+    let returned = renderer.render(&scene).unwrap();
+    assert_eq!(
+        &*renderer.render_mapped(&scene).unwrap(),
+        returned.as_slice()
+    );
+    let mut read = vec![0.0; 4 * 37 * 11];
+    renderer.render_into(&scene, &mut read).unwrap();
+    assert_eq!(read, returned.as_slice());
+    assert!(renderer.render_into(&scene, &mut read[1..]).is_err());
+}
+
+/// Runs `energywave bench` in a fresh folder: its JSON, and the folder.
+fn bench(arguments: &[&str]) -> (Value, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_energywave"))
+        .args([
+            "bench",
+            "--json",
+            "--seconds",
+            "0.01",
+            "--frames-out",
+            "frames",
+        ])
+        .args(arguments)
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    (serde_json::from_slice(&output.stdout).unwrap(), folder)
+}
+
+#[test]
+fn a_table_has_nine_cells_with_their_frames() {
+    let (cells, folder) = bench(&["--table", "2"]);
+    let cells = cells.as_array().unwrap();
+    assert_eq!(cells.len(), 9);
+    for (cell, (i, j)) in cells
+        .iter()
+        .zip((0..3).flat_map(|i| (0..3).map(move |j| (i, j))))
+    {
+        assert_eq!(
+            (&cell["table"], &cell["field"]),
+            (&2.into(), &"torus".into())
+        );
+        assert_eq!(cell["resolution"], RESOLUTIONS[i]);
+        assert_eq!(cell["divisions"], DIVISIONS[j]);
+        let ratio = cell["fps"].as_f64().unwrap() / cell["paper_fps"].as_f64().unwrap();
+        assert!((cell["ratio"].as_f64().unwrap() / ratio - 1.0).abs() < 1e-9);
+    }
+    let cell = &cells[1];
+    let scene = Table::Torus.scene(128, 128);
+    let scene = turned(&scene, cell["frame"].as_u64().unwrap() as u32);
+    let frame = RadianceImage::open(folder.path().join("frames/torus-128-128.exr")).unwrap();
+    let found = compare(&frame, &reference::render_simpson(&scene).unwrap()).unwrap();
+    assert!(found.max < WORST_PIXEL, "{found:?}");
+}
+
+#[test]
+fn a_scene_is_measured_with_its_overrides() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/figure-09.toml");
+    let (record, folder) = bench(&[scene, "--size", "32x16", "--divisions", "10"]);
+    assert_eq!(record["width"], 32);
+    assert_eq!(record["height"], 16);
+    assert_eq!(record["method"], "simpson");
+    assert_eq!(record["sampling"], "pixels");
+    assert_eq!(record["evaluations"], 2 * 32 * 16);
+    assert_eq!(record["field_evaluations"], 2 * 32 * 16 * 11);
+    assert!(record["fps"].as_f64().unwrap() > 0.0);
+    assert!(folder.path().join("frames/figure-09.exr").exists());
+}
+
+#[test]
+fn a_bench_of_nothing_that_exists_is_refused() {
+    let run = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_energywave"))
+            .arg("bench")
+            .args(arguments)
+            .output()
+            .unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    assert_eq!(run(&["--table", "4"]).0, Some(2));
+    let (code, message) = run(&["--divisions", "64"]);
+    assert_eq!(code, Some(2));
+    assert!(message.contains("SCENE"), "{message}");
+    assert_eq!(run(&["nowhere.toml"]).0, Some(3));
+}
