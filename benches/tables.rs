@@ -8,10 +8,11 @@ use std::fmt::Write;
 use std::time::{Duration, Instant};
 
 use energywave::bench::{DIVISIONS, FRAMES_PER_TURN, RESOLUTIONS, Table, measure, turned};
+use energywave::image::compare;
 use energywave::opencl::{BuildOptions, Compute, DeviceBuffer, OpenClDevice, Program, discover};
 use energywave::pack::{self, layout};
 use energywave::ray::ViewPlane;
-use energywave::{Device, Renderer, Scene};
+use energywave::{Device, RadianceImage, Renderer, Scene};
 use glam::DVec3;
 use plotters::prelude::*;
 
@@ -52,7 +53,7 @@ fn main() {
                     resolution,
                     divisions,
                     ours: measure(&mut renderer, &scene, TIME).unwrap().fps,
-                    plain: plain.fps(&scene),
+                    plain: plain.fps(&scene, &renderer.render(&scene).unwrap()),
                     paper: table.paper_fps()[row][column],
                 });
             }
@@ -84,8 +85,9 @@ impl Plain {
         Self { compute, program }
     }
 
-    /// Frames a second by the median time of whole frames, read-back included, as [`measure`] does.
-    fn fps(&self, scene: &Scene) -> f64 {
+    /// Frames a second by the median time of whole frames, read-back included, as [`measure`] does. The first frame must
+    /// show what `ours` shows.
+    fn fps(&self, scene: &Scene, ours: &RadianceImage) -> f64 {
         let pixels = scene.image.pixels();
         let mut image = vec![[0.0_f32; 4]; pixels];
         let output = DeviceBuffer::new(&self.compute, "the image", pixels).unwrap();
@@ -95,7 +97,7 @@ impl Plain {
             node_count: scene.integration.divisions + 1,
             ..bytemuck::Zeroable::zeroed()
         };
-        let mut render = |frame: u32| {
+        let mut render = |frame: u32, image: &mut [[f32; 4]]| {
             let scene = turned(scene, frame);
             let plane = ViewPlane::new(&scene.camera, scene.image);
             let view = pack::view(&plane, scene.image.width, 0.0);
@@ -111,14 +113,23 @@ impl Plain {
                     64,
                 )
                 .unwrap();
-            output.read(&self.compute, &mut image).unwrap();
+            output.read(&self.compute, image).unwrap();
         };
-        render(0);
+        render(0, &mut image);
+        let mut first = RadianceImage::new(scene.image).unwrap();
+        first
+            .as_mut_slice()
+            .copy_from_slice(bytemuck::cast_slice(&image));
+        let difference = compare(&first, ours).unwrap();
+        assert!(
+            difference.p999 < 1e-3,
+            "plain.cl draws something else: {difference:?}"
+        );
         let mut times = Vec::new();
         let begun = Instant::now();
         while begun.elapsed() < TIME || times.len() < 3 {
             let frame_begun = Instant::now();
-            render(times.len() as u32 % FRAMES_PER_TURN);
+            render(times.len() as u32 % FRAMES_PER_TURN, &mut image);
             times.push(frame_begun.elapsed());
         }
         times.sort();
@@ -199,7 +210,7 @@ fn plot(path: &str, cells: &[Cell]) {
         .margin(12)
         .x_label_area_size(40)
         .y_label_area_size(56)
-        .build_cartesian_2d((1e6..1e8_f64).log_scale(), (0.1..1e4_f64).log_scale())
+        .build_cartesian_2d((1e6..1e8_f64).log_scale(), (0.01..1e4_f64).log_scale())
         .unwrap();
     chart
         .configure_mesh()
@@ -248,6 +259,7 @@ fn plot(path: &str, cells: &[Cell]) {
     }
     chart
         .configure_series_labels()
+        .position(SeriesLabelPosition::LowerLeft)
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK.mix(0.3))
         .draw()
