@@ -2,7 +2,7 @@
 // one ray; floatv, intv and uintv hold one value for each lane, float3v a vector of space for each.
 #pragma once
 
-// For what runs once a sample: PoCL 3.1 leaves such calls in place, which costs a curve 8 % of its time.
+// For what runs once a sample: PoCL 3.1 leaves such calls in place, which costs a curve 15 % of its time.
 #ifndef INLINE
 #define INLINE __attribute__((always_inline))
 #endif
@@ -42,7 +42,7 @@ typedef JOIN(uint, LANES) uintv;
 #define splat(value) ((floatv)(value))
 
 // Whether a comparison holds in any lane. Halves are joined until two words are left: any() takes the lanes one by one
-// on PoCL 3.1, which costs a curve 5 % of its time. With -D NO_SHUFFLES vectors stay whole: oclgrind 21.10 takes the
+// on PoCL 3.1, which costs a curve 7 % of its time. With -D NO_SHUFFLES vectors stay whole: oclgrind 21.10 takes the
 // halves for uninitialised.
 bool any_lane(const intv condition) {
 #if LANES == 1

@@ -9,7 +9,7 @@
 
 #if LANES > 1
 // Four pixels from the channels of four lanes: red with green and blue with alpha, then pairs with pairs. Said element
-// by element the same costs a torus of 64 divisions 8 % of its frame.
+// by element the same costs a torus of 64 divisions a tenth of its frame.
 void store_four_pixels(__global float *const values, const float4 red, const float4 green, const float4 blue) {
     float8 red_green = (float8)(0.0f), blue_alpha = (float8)(1.0f);
     red_green.even = red, red_green.odd = green, blue_alpha.even = blue;
