@@ -221,3 +221,14 @@ fn reference_cost(scene: &Scene, time: Duration) -> FrameCost {
         launches: 1,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_renderer_may_move_to_another_thread() {
+        fn is_send<T: Send>() {}
+        is_send::<Renderer>();
+    }
+}

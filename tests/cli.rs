@@ -1,77 +1,15 @@
-//! The program: exit codes, messages, outputs, and what it does where OpenCL is missing or broken.
+//! The program: exit codes, messages and outputs.
 #![allow(clippy::unwrap_used, clippy::panic)]
 #![cfg(unix)] // shells, signals and the loader's environment variables
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::sync::LazyLock;
+mod common;
+
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use common::program::{Folder, PROGRAM, SCENE, device, expect, stderr};
 use energywave::RadianceImage;
 use serde_json::Value;
-
-const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/figure-07.toml");
-const PROGRAM: &str = env!("CARGO_BIN_EXE_energywave");
-
-/// The OpenCL device under test.
-fn device() -> &'static str {
-    static DEVICE: LazyLock<String> =
-        LazyLock::new(|| std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned()));
-    &DEVICE
-}
-
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Self(
-            tempfile::Builder::new()
-                .prefix("with space ")
-                .tempdir()
-                .unwrap(),
-        )
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn command(&self) -> Command {
-        let mut command = Command::new(PROGRAM);
-        command.current_dir(self.path());
-        command.env_remove("ENERGYWAVE_DEVICE"); // what is typed decides
-        command
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        self.command().args(arguments).output().unwrap()
-    }
-
-    /// Renders `SCENE` to a name, with further arguments.
-    fn render(&self, name: &str, arguments: &[&str]) -> Output {
-        let all = [&["render", SCENE, "-o", name], arguments].concat();
-        self.run(&all)
-    }
-
-    fn names(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(self.path()).unwrap();
-        entries
-            .map(|e| e.unwrap().file_name().into_string().unwrap())
-            .collect()
-    }
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-#[track_caller]
-fn expect(output: &Output, code: i32, words: &str) {
-    let message = stderr(output);
-    assert_eq!(output.status.code(), Some(code), "{message}");
-    assert!(message.contains(words), "{message}\nhas not: {words}");
-    assert!(!message.contains("panicked"), "{message}");
-}
 
 #[test]
 fn render_writes_png_and_exr_and_names_the_device() {
@@ -191,40 +129,6 @@ fn an_image_beyond_the_limit_exits_with_3() {
 }
 
 #[test]
-fn a_device_that_is_not_there_or_fits_two_exits_with_4() {
-    let folder = Folder::new();
-    expect(
-        &folder.render("out.png", &["--device", "voodoo"]),
-        4,
-        "no device \"voodoo\"; there are:",
-    );
-    expect(
-        &folder.render("out.png", &["--device", "99"]),
-        4,
-        "no device \"99\"",
-    );
-    let variable = |name: &str, value: &str, arguments: &[&str]| {
-        let mut command = folder.command();
-        command.args(["render", SCENE, "-o", "out.png", "--size", "8x8"]);
-        command.args(arguments).env(name, value).output().unwrap()
-    };
-    expect(
-        &variable("ENERGYWAVE_DEVICE", "voodoo", &[]),
-        4,
-        "no device \"voodoo\"",
-    );
-    let both = variable("POCL_DEVICES", "pthread pthread", &["--device", "pthread"]);
-    expect(&both, 4, "fits 2 devices");
-    assert!(stderr(&both).contains("0: pthread") && stderr(&both).contains("1: pthread"));
-    assert!(folder.names().is_empty());
-    expect(
-        &variable("ENERGYWAVE_DEVICE", "voodoo", &["--device", "reference"]),
-        0,
-        "reference",
-    );
-}
-
-#[test]
 fn outputs_that_cannot_be_written_exit_with_7_before_the_work() {
     let folder = Folder::new();
     let begun = Instant::now();
@@ -321,113 +225,6 @@ fn ctrl_c_exits_with_130_and_leaves_nothing() {
     let output = child.wait_with_output().unwrap();
     expect(&output, 130, "interrupted");
     assert!(folder.names().is_empty(), "left: {:?}", folder.names());
-}
-
-/// A folder with a file `libOpenCL.so.1` that is no library: the loader is there and cannot be loaded.
-fn without_loader(folder: &Folder) -> PathBuf {
-    let path = folder.path().join("libraries");
-    std::fs::create_dir(&path).unwrap();
-    std::fs::write(path.join("libOpenCL.so.1"), "no library").unwrap();
-    path
-}
-
-#[test]
-fn without_opencl_the_reference_draws_and_one_line_says_what_to_install() {
-    let folder = Folder::new();
-    let libraries = without_loader(&folder);
-    let empty = folder.path().join("vendors");
-    std::fs::create_dir(&empty).unwrap();
-    for (variable, value, words) in [
-        (
-            "LD_LIBRARY_PATH",
-            libraries.as_path(),
-            "install ocl-icd-libopencl1",
-        ),
-        (
-            "OCL_ICD_VENDORS",
-            empty.as_path(),
-            "install pocl-opencl-icd",
-        ),
-    ] {
-        let mut command = folder.command();
-        command.args(["render", SCENE, "-o", "out.png", "--size", "8x8"]);
-        let output = command.env(variable, value).output().unwrap();
-        expect(&output, 0, words);
-        assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
-        assert!(stderr(&output).contains("reference"));
-        assert!(folder.names().contains(&"out.png".to_owned()));
-
-        let devices = folder
-            .command()
-            .arg("devices")
-            .env(variable, value)
-            .output()
-            .unwrap();
-        expect(&devices, 0, words);
-
-        let cpu = folder
-            .command()
-            .args(["verify", "--device", device()])
-            .env(variable, value)
-            .output()
-            .unwrap();
-        expect(&cpu, 4, words);
-    }
-}
-
-#[test]
-fn a_failing_kernel_build_exits_with_5_and_names_file_and_line() {
-    let folder = Folder::new();
-    let build = |options: &str| {
-        let mut command = folder.command();
-        command.args(["render", SCENE, "-o", "out.png", "--device", device()]);
-        command
-            .env("ENERGYWAVE_BUILD_OPTIONS", options)
-            .output()
-            .unwrap()
-    };
-    let lanes = build("-DLANES=3");
-    expect(&lanes, 5, "LANES must be 1, 4, 8 or 16");
-    let line = 1 + include_str!("../cl/lanes.h")
-        .lines()
-        .position(|l| l.contains("#error"))
-        .unwrap();
-    assert!(
-        stderr(&lanes).contains(&format!("cl/lanes.h:{line}")),
-        "{}",
-        stderr(&lanes)
-    );
-    expect(&build("-cl-no-such-option"), 5, "CL_INVALID_BUILD_OPTIONS");
-    assert!(folder.names().is_empty(), "left: {:?}", folder.names());
-}
-
-#[test]
-fn devices_lists_every_property_and_one_default() {
-    let output = Folder::new().run(&["devices", "--json"]);
-    expect(&output, 0, "");
-    let list: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
-    for device in &list {
-        for key in [
-            "index",
-            "compute_units",
-            "memory_bytes",
-            "max_allocation_bytes",
-            "lanes",
-        ] {
-            assert!(device[key].is_u64(), "{key}: {device}");
-        }
-        for key in ["name", "type", "platform", "version", "driver"] {
-            assert!(device[key].is_string(), "{key}: {device}");
-        }
-    }
-    assert_eq!(
-        list.iter()
-            .filter(|device| device["default"] == true)
-            .count(),
-        1
-    );
-    assert_eq!(list.last().unwrap()["type"], "reference");
-    expect(&Folder::new().run(&["devices"]), 0, "default: ");
 }
 
 #[test]

@@ -2,6 +2,8 @@
 #![allow(dead_code)] // every test file is a crate of its own and uses its own part
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
 
+pub mod program;
+
 use energywave::image::{Difference, compare};
 use energywave::opencl::{Compute, OpenClDevice, discover};
 use energywave::scene::{Camera, Curve, Cylinder, Decay, ImageSize, Sphere, Torus};

@@ -1,0 +1,150 @@
+//! Laws that every image obeys: linearity, order, mirror, motion and scale.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{difference, full_scene, renderer};
+use energywave::{RadianceImage, Scene};
+use glam::{DMat3, DVec3};
+
+/// The same light summed from float32 coordinates that round differently.
+const ROUNDING: f64 = 2e-4;
+
+#[test]
+fn light_is_linear_in_the_coefficients_and_adds_up() {
+    let mut renderer = renderer(common::device().lanes, "");
+    let scene = full_scene(31, 17);
+    let image = renderer.render(&scene).unwrap();
+    let mut twice = scene.clone();
+    twice.spheres.iter_mut().for_each(|s| s.coefficient *= 2.0);
+    twice
+        .cylinders
+        .iter_mut()
+        .for_each(|s| s.coefficient *= 2.0);
+    twice.tori.iter_mut().for_each(|s| s.coefficient *= 2.0);
+    twice.curves.iter_mut().for_each(|s| s.coefficient *= 2.0);
+    let doubled = renderer.render(&twice).unwrap();
+    let pairs = doubled.as_slice().chunks(4).zip(image.as_slice().chunks(4));
+    assert!(
+        pairs
+            .into_iter()
+            .all(|(d, i)| (0..3).all(|c| d[c] == 2.0 * i[c]))
+    );
+
+    let mut sum = RadianceImage::new(scene.image).unwrap();
+    let mut part = scene.clone();
+    (part.tori, part.curves) = (Vec::new(), Vec::new());
+    let mut rest = scene.clone();
+    (rest.spheres, rest.cylinders) = (Vec::new(), Vec::new());
+    for image in [
+        renderer.render(&part).unwrap(),
+        renderer.render(&rest).unwrap(),
+    ] {
+        for (total, value) in sum.as_mut_slice().iter_mut().zip(image.as_slice()) {
+            *total += value;
+        }
+    }
+    assert!(difference(&sum, &image).max < 1e-6);
+}
+
+#[test]
+fn the_order_of_the_sources_does_not_matter() {
+    let mut renderer = renderer(common::device().lanes, "");
+    let scene = full_scene(31, 17);
+    let mut reversed = scene.clone();
+    reversed.spheres.reverse();
+    reversed.tori.reverse();
+    reversed.curves.reverse();
+    let (a, b) = (
+        renderer.render(&scene).unwrap(),
+        renderer.render(&reversed).unwrap(),
+    );
+    assert_ne!(
+        a, b,
+        "sums in another order round differently: was the order kept?"
+    );
+    assert!(difference(&a, &b).max < 1e-6);
+}
+
+/// The scene with every vector mapped.
+fn mapped(scene: &Scene, map: impl Fn(DVec3) -> DVec3) -> Scene {
+    let mut scene = scene.clone();
+    let camera = &mut scene.camera;
+    (camera.eye, camera.target, camera.up) = (map(camera.eye), map(camera.target), map(camera.up));
+    for sphere in &mut scene.spheres {
+        sphere.center = map(sphere.center);
+    }
+    for cylinder in &mut scene.cylinders {
+        (cylinder.point, cylinder.direction) = (map(cylinder.point), map(cylinder.direction));
+    }
+    for torus in &mut scene.tori {
+        (torus.center, torus.axis) = (map(torus.center), map(torus.axis));
+    }
+    for curve in &mut scene.curves {
+        curve.control_points = curve.control_points.map(&map);
+    }
+    scene
+}
+
+#[test]
+fn a_mirrored_scene_gives_the_mirrored_image() {
+    let mut renderer = renderer(common::device().lanes, "");
+    let scene = full_scene(31, 17);
+    let image = renderer.render(&scene).unwrap();
+    let mirrored = mapped(&scene, |v| DVec3::new(-v.x, v.y, v.z));
+    let mirrored = renderer.render(&mirrored).unwrap();
+    let mut flipped = image.clone();
+    let rows = flipped.as_mut_slice().chunks_mut(4 * 31);
+    for (row, original) in rows.zip(image.as_slice().chunks(4 * 31)) {
+        for (pixel, opposite) in row.chunks_mut(4).zip(original.chunks(4).rev()) {
+            pixel.copy_from_slice(opposite);
+        }
+    }
+    assert!(difference(&mirrored, &flipped).max < ROUNDING);
+    assert!(
+        difference(&mirrored, &image).max > 0.01,
+        "the scene is symmetric"
+    );
+}
+
+#[test]
+fn a_moved_turned_and_scaled_scene_gives_the_same_image() {
+    let mut renderer = renderer(common::device().lanes, "");
+    let scene = full_scene(31, 17);
+    let image = renderer.render(&scene).unwrap();
+    let turn = DMat3::from_rotation_y(0.7) * DMat3::from_rotation_x(-1.9);
+    let turned = mapped(&scene, |v| turn * v);
+    assert!(difference(&renderer.render(&turned).unwrap(), &image).max < ROUNDING);
+    // A field of 1/r falls with the scale; coefficients that grow with it keep the light.
+    for scale in [1e-4, 1e4] {
+        let mut scaled = mapped(&scene, |v| v * scale);
+        scaled.camera.near *= scale;
+        scaled.tori.iter_mut().for_each(|t| t.major_radius *= scale);
+        scaled
+            .spheres
+            .iter_mut()
+            .for_each(|s| s.coefficient *= scale);
+        scaled
+            .cylinders
+            .iter_mut()
+            .for_each(|s| s.coefficient *= scale);
+        scaled.tori.iter_mut().for_each(|s| s.coefficient *= scale);
+        scaled
+            .curves
+            .iter_mut()
+            .for_each(|s| s.coefficient *= scale);
+        let found = difference(&renderer.render(&scaled).unwrap(), &image);
+        assert!(found.max < ROUNDING, "{scale}: {found:?}");
+    }
+    // Far from the world's origin float32 would see nothing; coordinates from the eye do.
+    let far = DVec3::new(1e6, -2e6, 3e6);
+    let mut moved = mapped(&scene, |v| v + far);
+    moved.camera.up -= far;
+    for (cylinder, original) in moved.cylinders.iter_mut().zip(&scene.cylinders) {
+        cylinder.direction = original.direction;
+    }
+    for (torus, original) in moved.tori.iter_mut().zip(&scene.tori) {
+        torus.axis = original.axis;
+    }
+    assert!(difference(&renderer.render(&moved).unwrap(), &image).max < ROUNDING);
+}

@@ -1,0 +1,151 @@
+//! What the program says and does where OpenCL is missing, broken, or ambiguous.
+#![allow(clippy::unwrap_used)]
+#![cfg(unix)] // the loader's environment variables
+
+mod common;
+
+use std::path::PathBuf;
+
+use common::program::{Folder, SCENE, device, expect, stderr};
+use serde_json::Value;
+
+/// A folder with a file `libOpenCL.so.1` that is no library: the loader is there and cannot be loaded.
+fn without_loader(folder: &Folder) -> PathBuf {
+    let path = folder.path().join("libraries");
+    std::fs::create_dir(&path).unwrap();
+    std::fs::write(path.join("libOpenCL.so.1"), "no library").unwrap();
+    path
+}
+
+#[test]
+fn a_device_that_is_not_there_or_fits_two_exits_with_4() {
+    let folder = Folder::new();
+    expect(
+        &folder.render("out.png", &["--device", "voodoo"]),
+        4,
+        "no device \"voodoo\"; there are:",
+    );
+    expect(
+        &folder.render("out.png", &["--device", "99"]),
+        4,
+        "no device \"99\"",
+    );
+    let variable = |name: &str, value: &str, arguments: &[&str]| {
+        let mut command = folder.command();
+        command.args(["render", SCENE, "-o", "out.png", "--size", "8x8"]);
+        command.args(arguments).env(name, value).output().unwrap()
+    };
+    expect(
+        &variable("ENERGYWAVE_DEVICE", "voodoo", &[]),
+        4,
+        "no device \"voodoo\"",
+    );
+    let both = variable("POCL_DEVICES", "pthread pthread", &["--device", "pthread"]);
+    expect(&both, 4, "fits 2 devices");
+    assert!(stderr(&both).contains("0: pthread") && stderr(&both).contains("1: pthread"));
+    assert!(folder.names().is_empty());
+    expect(
+        &variable("ENERGYWAVE_DEVICE", "voodoo", &["--device", "reference"]),
+        0,
+        "reference",
+    );
+}
+
+#[test]
+fn without_opencl_the_reference_draws_and_one_line_says_what_to_install() {
+    let folder = Folder::new();
+    let libraries = without_loader(&folder);
+    let empty = folder.path().join("vendors");
+    std::fs::create_dir(&empty).unwrap();
+    for (variable, value, words) in [
+        (
+            "LD_LIBRARY_PATH",
+            libraries.as_path(),
+            "install ocl-icd-libopencl1",
+        ),
+        (
+            "OCL_ICD_VENDORS",
+            empty.as_path(),
+            "install pocl-opencl-icd",
+        ),
+    ] {
+        let mut command = folder.command();
+        command.args(["render", SCENE, "-o", "out.png", "--size", "8x8"]);
+        let output = command.env(variable, value).output().unwrap();
+        expect(&output, 0, words);
+        assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
+        assert!(stderr(&output).contains("reference"));
+        assert!(folder.names().contains(&"out.png".to_owned()));
+
+        let devices = folder
+            .command()
+            .arg("devices")
+            .env(variable, value)
+            .output()
+            .unwrap();
+        expect(&devices, 0, words);
+
+        let cpu = folder
+            .command()
+            .args(["verify", "--device", device()])
+            .env(variable, value)
+            .output()
+            .unwrap();
+        expect(&cpu, 4, words);
+    }
+}
+
+#[test]
+fn a_failing_kernel_build_exits_with_5_and_names_file_and_line() {
+    let folder = Folder::new();
+    let build = |options: &str| {
+        let mut command = folder.command();
+        command.args(["render", SCENE, "-o", "out.png", "--device", device()]);
+        command
+            .env("ENERGYWAVE_BUILD_OPTIONS", options)
+            .output()
+            .unwrap()
+    };
+    let lanes = build("-DLANES=3");
+    expect(&lanes, 5, "LANES must be 1, 4, 8 or 16");
+    let line = 1 + include_str!("../cl/lanes.h")
+        .lines()
+        .position(|l| l.contains("#error"))
+        .unwrap();
+    assert!(
+        stderr(&lanes).contains(&format!("cl/lanes.h:{line}")),
+        "{}",
+        stderr(&lanes)
+    );
+    expect(&build("-cl-no-such-option"), 5, "CL_INVALID_BUILD_OPTIONS");
+    assert!(folder.names().is_empty(), "left: {:?}", folder.names());
+}
+
+#[test]
+fn devices_lists_every_property_and_one_default() {
+    let output = Folder::new().run(&["devices", "--json"]);
+    expect(&output, 0, "");
+    let list: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
+    for device in &list {
+        for key in [
+            "index",
+            "compute_units",
+            "memory_bytes",
+            "max_allocation_bytes",
+            "lanes",
+        ] {
+            assert!(device[key].is_u64(), "{key}: {device}");
+        }
+        for key in ["name", "type", "platform", "version", "driver"] {
+            assert!(device[key].is_string(), "{key}: {device}");
+        }
+    }
+    assert_eq!(
+        list.iter()
+            .filter(|device| device["default"] == true)
+            .count(),
+        1
+    );
+    assert_eq!(list.last().unwrap()["type"], "reference");
+    expect(&Folder::new().run(&["devices"]), 0, "default: ");
+}
