@@ -10,7 +10,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use energywave::bench::{DIVISIONS, RESOLUTIONS, Table, turned};
 use energywave::pack::Sources;
 use energywave::ray::ViewPlane;
-use energywave::scene::{Sphere, Torus};
+use energywave::scene::{Curve, Cylinder, Sphere, Torus};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 
@@ -42,26 +42,39 @@ fn tables(criterion: &mut Criterion) {
     }
 }
 
-/// A scene of the tables' geometry with many sources inside a ball, in place of its own.
-fn crowd(is_torus: bool, count: u32) -> Scene {
+/// A scene of the tables' geometry, 128x128 with 64 divisions, with many sources inside a cube in place of its own.
+fn crowd(kind: &str, count: u32) -> Scene {
     let mut scene = Table::Torus.scene(128, 64);
     scene.tori.clear();
     let mut random = fastrand::Rng::with_seed(1);
     let mut point = || DVec3::from([0; 3].map(|_| 2.0 * random.f64() - 1.0));
+    let (coefficient, color) = (1.0, DVec3::ONE);
     for _ in 0..count {
-        if is_torus {
-            scene.tori.push(Torus {
+        match kind {
+            "spheres" => scene.spheres.push(Sphere {
                 center: point(),
-                axis: point() + DVec3::Z,
+                coefficient,
+                color,
+            }),
+            "cylinders" => scene.cylinders.push(Cylinder {
+                point: point(),
+                direction: point(),
+                coefficient,
+                color,
+            }),
+            "tori" => scene.tori.push(Torus {
+                center: point(),
+                axis: point(),
                 major_radius: 0.5,
-                coefficient: 1.0,
-                color: DVec3::ONE,
-            });
-        } else {
-            scene.spheres.push(Sphere {
-                center: point(),
-                ..Sphere::default()
-            });
+                coefficient,
+                color,
+            }),
+            _ => scene.curves.push(Curve {
+                control_points: [point(), point(), point()],
+                coefficient,
+                color,
+                intensity: None,
+            }),
         }
     }
     scene
@@ -69,10 +82,10 @@ fn crowd(is_torus: bool, count: u32) -> Scene {
 
 fn sources(criterion: &mut Criterion) {
     let mut renderer = renderer();
-    for (kind, is_torus) in [("tori", true), ("spheres", false)] {
+    for kind in ["spheres", "cylinders", "tori", "curves"] {
         let mut group = criterion.benchmark_group(kind);
         for count in [1, 16, 256] {
-            let scene = crowd(is_torus, count);
+            let scene = crowd(kind, count);
             group.throughput(Throughput::Elements(u64::from(count)));
             group.bench_function(count.to_string(), |bencher| {
                 bencher.iter(|| renderer.render_mapped(&scene).unwrap()[0]);
@@ -82,7 +95,7 @@ fn sources(criterion: &mut Criterion) {
 }
 
 fn packing(criterion: &mut Criterion) {
-    let scene = crowd(false, 4096);
+    let scene = crowd("spheres", 4096);
     let plane = ViewPlane::new(&scene.camera, scene.image);
     criterion.bench_function("pack 4096 spheres", |bencher| {
         bencher.iter(|| black_box(Sources::new(&scene, plane.eye, plane.ray_length)));

@@ -1,9 +1,10 @@
-//! Laws that every image obeys: linearity, order, mirror, motion and scale.
+//! Laws that every image obeys: linearity, order, mirror, motion, scale, and finite light.
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
 use common::{difference, full_scene, renderer};
+use energywave::scene::Decay;
 use energywave::{RadianceImage, Scene};
 use glam::{DMat3, DVec3};
 
@@ -147,4 +148,72 @@ fn a_moved_turned_and_scaled_scene_gives_the_same_image() {
         torus.axis = original.axis;
     }
     assert!(difference(&renderer.render(&moved).unwrap(), &image).max < ROUNDING);
+}
+
+/// A scene whose every number lies anywhere between the limits, by magnitude.
+fn wild_scene(random: &mut fastrand::Rng) -> Scene {
+    let magnitude = |random: &mut fastrand::Rng| 10_f64.powf(18.0 * random.f64() - 9.0).min(9e8);
+    let scale = magnitude(random);
+    let near = |random: &mut fastrand::Rng| {
+        // Most points lie within one scale of each other, some anywhere.
+        let scale = if random.u8(..8) == 0 {
+            magnitude(random)
+        } else {
+            scale
+        };
+        DVec3::from([0; 3].map(|_| (scale * (2.0 * random.f64() - 1.0)).clamp(-9e8, 9e8)))
+    };
+    let mut scene = common::empty_scene(6, 4);
+    scene.camera.eye = near(random);
+    scene.camera.target = near(random);
+    scene.camera.up = near(random);
+    scene.camera.near = magnitude(random);
+    scene.camera.fov_y = 1.0 + 178.0 * random.f64();
+    scene.camera.ray_length = Some(magnitude(random));
+    scene.integration.divisions = 8;
+    scene.decay = random.bool().then(|| Decay {
+        alpha: magnitude(random),
+        beta: magnitude(random),
+    });
+    let eye = scene.camera.eye;
+    let place = |random: &mut fastrand::Rng| {
+        if random.u8(..6) == 0 {
+            eye
+        } else {
+            near(random)
+        }
+    };
+    for _ in 0..3 {
+        let mut sphere = common::sphere([0.0; 3], 1.0);
+        sphere.center = place(random);
+        scene.spheres.push(sphere);
+        let mut cylinder = common::cylinder([0.0; 3], [1.0; 3]);
+        (cylinder.point, cylinder.direction) = (place(random), place(random));
+        scene.cylinders.push(cylinder);
+        let mut torus = common::torus([0.0; 3], [1.0; 3], magnitude(random));
+        (torus.center, torus.axis) = (place(random), place(random));
+        scene.tori.push(torus);
+        let mut curve = common::curve([[0.0; 3]; 3], None);
+        curve.control_points = [place(random), place(random), place(random)];
+        curve.intensity = random.bool().then(|| vec![1.0, 0.2, 0.7, 0.3]);
+        scene.curves.push(curve);
+    }
+    scene
+}
+
+#[test]
+fn every_pixel_of_every_valid_scene_is_finite() {
+    let mut renderer = renderer(common::device().lanes, "");
+    let mut valid = 0;
+    for seed in 0..3000 {
+        let scene = wild_scene(&mut fastrand::Rng::with_seed(seed));
+        if scene.validate().is_err() {
+            continue;
+        }
+        valid += 1;
+        let image = renderer.render(&scene).unwrap();
+        let is_finite = image.as_slice().iter().all(|value| value.is_finite());
+        assert!(is_finite, "seed {seed}: {scene:#?}\n{:?}", image.as_slice());
+    }
+    assert!(valid > 500, "only {valid} of the scenes are valid");
 }

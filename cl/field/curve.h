@@ -53,7 +53,7 @@ curve_path curve_along(const Ray *const ray, const Sources *const sources, const
 
     // From |C2|^2 (2 u^3) + (velocity^2 - 2 bend Y) u - velocity X = 0, (X, Y) = P from the parabola's vertex.
     const float speed2 = fma(path.velocity_along, path.velocity_along, path.velocity_across * path.velocity_across);
-    path.inverse_speed2 = speed2 > 0.0f ? 1.0f / speed2 : 0.0f;
+    path.inverse_speed2 = speed2 > 1e-36f ? 1.0f / speed2 : 0.0f;
     const float turn = path.velocity_along / (path.is_straight ? 1.0f : path.bend);
     const float per_bend = 1.0f / (path.is_straight ? 1.0f : path.bend);
     const float vertex2 = path.vertex * path.vertex;

@@ -12,6 +12,9 @@ use crate::scene::Curve;
 /// far-off vertex, while the kernels' foot on the tangent needs two Newton steps.
 const STRAIGHT: f64 = 1e-3;
 
+/// So does one whose bend is below this share of the distances to it: the cubic's coefficients would overflow.
+const TINY: f64 = 1e-12;
+
 pub(super) fn curve(
     frame: &Frame,
     curve: &Curve,
@@ -23,7 +26,8 @@ pub(super) fn curve(
     let middle = 0.25 * b0 + 0.5 * b1 + 0.25 * b2;
     let velocity = b2 - b0; // C'(1/2)
     let bend = c2.length();
-    let is_straight = bend <= STRAIGHT * velocity.length();
+    let far = TINY * (frame.ray_length + middle.distance(frame.origin));
+    let is_straight = bend <= STRAIGHT * velocity.length() || bend < far;
     // `across` follows C2 where there is any; what lies perpendicular to the velocity serves the rest.
     let across = c2
         .try_normalize()

@@ -28,6 +28,7 @@ pub struct Sources {
 #[derive(Debug, Clone, Copy)]
 struct Frame {
     origin: DVec3,
+    ray_length: f64,
     measure: f64,
 }
 
@@ -49,7 +50,11 @@ impl Sources {
             Measure::Parameter => 1.0,
             Measure::Length => ray_length,
         };
-        let frame = Frame { origin, measure };
+        let frame = Frame {
+            origin,
+            ray_length,
+            measure,
+        };
         let mut packed = Self {
             spheres: scene.spheres.iter().map(|s| sphere(&frame, s)).collect(),
             cylinders: scene
