@@ -5,7 +5,7 @@ mod common;
 
 use common::{difference, full_scene, renderer};
 use energywave::scene::Decay;
-use energywave::{RadianceImage, Scene};
+use energywave::{RadianceImage, Scene, reference};
 use glam::{DMat3, DVec3};
 
 /// The same light summed from float32 coordinates that round differently.
@@ -216,4 +216,20 @@ fn every_pixel_of_every_valid_scene_is_finite() {
         assert!(is_finite, "seed {seed}: {scene:#?}\n{:?}", image.as_slice());
     }
     assert!(valid > 500, "only {valid} of the scenes are valid");
+}
+
+#[test]
+fn a_tiny_curve_on_endless_rays_overflows_nothing() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for size in [1e-3, 1e-5] {
+        let mut scene = common::empty_scene(16, 12);
+        scene.camera.ray_length = Some(1e9);
+        let points = common::CURVE_SHAPES[0].map(|point| point.map(|x| x * size));
+        let series = Some(vec![1.0, 0.5, 2.0]);
+        scene.curves.push(common::curve(points, series));
+        let image = renderer.render(&scene).unwrap();
+        let expected = reference::render_simpson(&scene).unwrap();
+        let found = difference(&image, &expected);
+        assert!(found.max < ROUNDING, "size {size}: {found:?}");
+    }
 }
