@@ -40,9 +40,13 @@ fn a_device_that_is_not_there_or_fits_two_exits_with_4() {
         4,
         "no device \"voodoo\"",
     );
-    let both = variable("POCL_DEVICES", "pthread pthread", &["--device", "pthread"]);
-    expect(&both, 4, "fits 2 devices");
-    assert!(stderr(&both).contains("0: pthread") && stderr(&both).contains("1: pthread"));
+    if common::device().platform == "Portable Computing Language" {
+        let both = variable("POCL_DEVICES", "pthread pthread", &["--device", "pthread"]);
+        expect(&both, 4, "fits 2 devices");
+        assert!(stderr(&both).contains("0: pthread") && stderr(&both).contains("1: pthread"));
+    } else {
+        println!("only PoCL can show one device twice: not checked here");
+    }
     assert!(folder.names().is_empty());
     expect(
         &variable("ENERGYWAVE_DEVICE", "voodoo", &["--device", "reference"]),
