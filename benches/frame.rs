@@ -98,7 +98,14 @@ fn packing(criterion: &mut Criterion) {
     let scene = crowd("spheres", 4096);
     let plane = ViewPlane::new(&scene.camera, scene.image);
     criterion.bench_function("pack 4096 spheres", |bencher| {
-        bencher.iter(|| black_box(Sources::new(&scene, plane.eye, plane.ray_length)));
+        bencher.iter(|| {
+            black_box(Sources::new(
+                &scene,
+                plane.eye,
+                plane.ray_length,
+                plane.ray_length,
+            ))
+        });
     });
 }
 

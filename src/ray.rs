@@ -22,6 +22,18 @@ impl Ray {
         }
     }
 
+    /// Why float32 devices cannot integrate along this ray; `None`: they can.
+    pub fn fault(&self) -> Option<&'static str> {
+        let is_bounded = |v: DVec3| v.to_array().iter().all(|x| x.abs() <= 1e9);
+        if !is_bounded(self.origin) || !is_bounded(self.span) {
+            Some("a coordinate beyond 1e9, what float32 devices can integrate")
+        } else if self.span.length() < 1e-9 {
+            Some("start and end are less than 1e-9 apart")
+        } else {
+            None
+        }
+    }
+
     /// The point L(s).
     pub fn at(&self, s: f64) -> DVec3 {
         self.origin + self.span * s

@@ -4,7 +4,7 @@ use std::ops::{ControlFlow, Deref};
 use std::time::{Duration, Instant};
 
 use crate::device::{Backend, Device};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, SceneError};
 use crate::image::RadianceImage;
 use crate::opencl::{BuildOptions, Mapped, OpenClRenderer};
 use crate::ray::Ray;
@@ -55,7 +55,10 @@ pub struct Renderer {
 #[derive(Debug)]
 enum RendererBackend {
     OpenCl(Box<OpenClRenderer>),
-    Reference { image: Vec<f32>, cost: FrameCost },
+    Reference {
+        image: Option<RadianceImage>,
+        cost: FrameCost,
+    },
 }
 
 impl Renderer {
@@ -77,7 +80,7 @@ impl Renderer {
                 RendererBackend::OpenCl(Box::new(OpenClRenderer::new(device, options)?))
             }
             Backend::Reference => RendererBackend::Reference {
-                image: Vec::new(),
+                image: None,
                 cost: FrameCost::default(),
             },
         };
@@ -148,11 +151,16 @@ impl Renderer {
             }
             RendererBackend::Reference { image, cost } => {
                 let begun = Instant::now();
-                image.resize(4 * scene.image.pixels(), 0.0);
+                let kept = image.take().filter(|image| image.size() == scene.image);
+                let image = image.insert(match kept {
+                    Some(image) => image,
+                    None => RadianceImage::new(scene.image)?,
+                });
                 let nothing = &mut |_: f32| ControlFlow::Continue(());
-                reference::render_into(scene, scene.integration.method, image, nothing)?;
+                let method = scene.integration.method;
+                reference::render_into(scene, method, image.as_mut_slice(), nothing)?;
                 *cost = reference_cost(scene, begun.elapsed());
-                Ok(MappedImage(MappedBackend::Reference(image)))
+                Ok(MappedImage(MappedBackend::Reference(image.as_slice())))
             }
         }
     }
@@ -185,9 +193,14 @@ impl Renderer {
     /// Linear RGB along single rays, light measured over the parameter s; the scene's camera and image play no part.
     ///
     /// # Errors
-    /// As [`Renderer::render`].
+    /// As [`Renderer::render`]; [`Error::Scene`] also for a ray that [`Ray::fault`] refuses.
     pub fn trace(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<[f64; 3]>> {
         scene.validate()?;
+        for (index, ray) in rays.iter().enumerate() {
+            if let Some(fault) = ray.fault() {
+                return Err(SceneError::value(format!("ray {index}"), fault).into());
+            }
+        }
         match &mut self.backend {
             RendererBackend::OpenCl(renderer) => {
                 let pixels = renderer.trace(scene, rays)?;

@@ -121,10 +121,8 @@ fn parse(text: &str, path: &Path) -> Result<Vec<KnownRay>> {
     let rays: Vec<KnownRay> =
         serde_json::from_str(text).map_err(|error| fail(format!("not a list of rays: {error}")))?;
     for (index, ray) in rays.iter().enumerate() {
-        if ray.start == ray.end {
-            return Err(fail(format!(
-                "ray {index}: start and end are the same point"
-            )));
+        if let Some(fault) = ray.ray().fault() {
+            return Err(fail(format!("ray {index}: {fault}")));
         }
         if let Some(scene) = ray.scene() {
             scene

@@ -146,5 +146,8 @@ fn a_bench_of_nothing_that_exists_is_refused() {
     let (code, message) = run(&["--divisions", "64"]);
     assert_eq!(code, Some(2));
     assert!(message.contains("SCENE"), "{message}");
+    let (code, message) = run(&["--table", "2", "--size", "64x64"]);
+    assert_eq!(code, Some(2));
+    assert!(message.contains("of their own"), "{message}");
     assert_eq!(run(&["nowhere.toml"]).0, Some(3));
 }

@@ -16,7 +16,7 @@ fn marks_left(lanes: u32, extra: &str, width: u32, height: u32) -> usize {
     let compute = common::compute();
     let program = Program::build(&compute, &["render.cl"], &common::options(lanes, extra)).unwrap();
     let plane = ViewPlane::new(&scene.camera, scene.image);
-    let packed = Sources::new(&scene, plane.eye, plane.ray_length);
+    let packed = Sources::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
     let nodes = pack::nodes(20, scene.decay);
     let launch = layout::Launch {
         count: width * height,

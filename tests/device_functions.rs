@@ -204,7 +204,7 @@ fn the_spline_matches_de_boor() {
             scene
                 .curves
                 .push(common::curve(common::CURVE_SHAPES[0], Some(series.clone())));
-            let pieces = Sources::new(&scene, DVec3::ZERO, 1.0).spline_pieces;
+            let pieces = Sources::new(&scene, DVec3::ZERO, 20.0, 1.0).spline_pieces;
             let count = [pieces.len() as f32];
             let inputs = [bytemuck::cast_slice(&pieces), &count, &ts];
             let found = &bench.run("spline", &inputs, ts.len(), 1)[0];
@@ -229,7 +229,7 @@ fn distance_error(bench: &Bench, kernel: &str, scene: &Scene, seed: u64) -> f64 
         .map(|_| Ray::between(point(3.0), point(6.0)))
         .collect();
     let ss: Vec<f32> = (0..COUNT).map(|_| random.f32()).collect();
-    let packed = Sources::new(scene, DVec3::ZERO, 1.0);
+    let packed = Sources::new(scene, DVec3::ZERO, 20.0, 1.0);
     let source: &[f32] = match kernel {
         "sphere_distance" => bytemuck::cast_slice(&packed.spheres),
         "cylinder_distance" => bytemuck::cast_slice(&packed.cylinders),

@@ -6,7 +6,7 @@
 
 floatv spline_at(__global const SplinePiece *const pieces, const uint count, const floatv t) {
     const floatv scaled = clamp(t, splat(0.0f), splat(1.0f)) * (float)count;
-    const intv piece = min(to_intv_down(scaled), (intv)((int)count - 1));
+    const intv piece = clamp(to_intv_down(scaled), (intv)(0), (intv)((int)count - 1));
     const floatv x = scaled - to_floatv(piece);
     __global const float *const values = (__global const float *)pieces;
     const floatv c0 = gather(values, 4 * piece);

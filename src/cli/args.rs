@@ -122,6 +122,14 @@ pub enum MethodName {
 }
 
 impl Overrides {
+    /// Whether nothing was typed.
+    pub fn is_empty(&self) -> bool {
+        self.size.is_none()
+            && self.method.is_none()
+            && self.divisions.is_none()
+            && self.tolerance.is_none()
+    }
+
     /// Replaces what was typed.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), Error> {
         if let Some(size) = self

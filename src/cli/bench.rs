@@ -51,6 +51,10 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
 }
 
 fn bench_tables(arguments: &BenchArguments) -> Outcome {
+    if !arguments.overrides.is_empty() {
+        let message = "the tables have sizes, method and divisions of their own; give a scene to measure with others";
+        return Err(Error::Unsupported(message.to_owned()).into());
+    }
     let tables = match arguments.table {
         Some(2) => vec![Table::Torus],
         Some(_) => vec![Table::Bezier],

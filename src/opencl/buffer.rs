@@ -164,6 +164,8 @@ pub struct Uploaded<T> {
     /// What the device has, or is about to have: a copy that is under way reads from here.
     contents: Vec<T>,
     under_way: Option<Event>,
+    /// Whether the device has `contents`, or a copy of them is under way.
+    is_valid: bool,
 }
 
 impl<T: Pod + PartialEq> Uploaded<T> {
@@ -174,19 +176,21 @@ impl<T: Pod + PartialEq> Uploaded<T> {
             buffer: None,
             contents: Vec::new(),
             under_way: None,
+            is_valid: false,
         }
     }
 
-    /// Makes the device's list equal to `data`, before the next command of the queue begins. It does not wait for that:
-    /// a wait costs a frame 45 us on PoCL 3.1.
+    /// Makes the device's list equal to `data`, before the next command of the queue begins. It does not wait for that
+    /// (a wait costs a frame 45 us on PoCL 3.1): [`Uploaded::settle`] tells whether it went well.
     ///
     /// # Errors
-    /// As [`DeviceBuffer::new`] and [`DeviceBuffer::write`].
+    /// As [`DeviceBuffer::new`] and [`DeviceBuffer::write`], also if an earlier copy failed.
     pub fn upload(&mut self, compute: &Compute, data: &[T]) -> Result<()> {
-        if self.contents == data && self.buffer.is_some() {
+        self.settle(compute)?;
+        if self.is_valid && self.contents == data {
             return Ok(());
         }
-        self.wait();
+        self.is_valid = false;
         self.contents.clear();
         self.contents.extend_from_slice(data);
         let buffer = match self.buffer.take() {
@@ -195,7 +199,7 @@ impl<T: Pod + PartialEq> Uploaded<T> {
         };
         let buffer = self.buffer.insert(buffer);
         if !data.is_empty() {
-            // SAFETY: the data fits into the buffer; `contents` is neither changed nor freed before `wait`.
+            // SAFETY: the data fits into the buffer; `contents` is neither changed nor freed before the event is over.
             let event = unsafe {
                 compute.queue.enqueue_write_buffer(
                     &mut buffer.buffer,
@@ -208,7 +212,21 @@ impl<T: Pod + PartialEq> Uploaded<T> {
             let name = &compute.device.name;
             self.under_way = Some(event.map_err(failed(name, "clEnqueueWriteBuffer"))?);
         }
+        self.is_valid = true;
         Ok(())
+    }
+
+    /// Waits for a copy under way. Once a launch that reads the list is over, this costs nothing.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the copy failed; the next upload repeats it.
+    pub fn settle(&mut self, compute: &Compute) -> Result<()> {
+        let Some(event) = self.under_way.take() else {
+            return Ok(());
+        };
+        let outcome = event.wait();
+        self.is_valid = outcome.is_ok();
+        outcome.map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))
     }
 
     /// The buffer's handle; null before the first upload.
@@ -219,18 +237,11 @@ impl<T: Pod + PartialEq> Uploaded<T> {
     }
 }
 
-impl<T> Uploaded<T> {
-    /// Waits for a copy that still reads `contents`.
-    fn wait(&mut self) {
-        if let Some(event) = self.under_way.take() {
-            // A copy that failed fails the commands after it too, where it is reported.
-            let _ = event.wait();
-        }
-    }
-}
-
 impl<T> Drop for Uploaded<T> {
     fn drop(&mut self) {
-        self.wait();
+        if let Some(event) = self.under_way.take() {
+            // The copy reads `contents`: it must be over before they are freed, however it ended.
+            let _ = event.wait();
+        }
     }
 }

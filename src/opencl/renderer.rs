@@ -109,7 +109,9 @@ impl OpenClRenderer {
     fn job(&mut self, scene: &Scene) -> Result<Job> {
         self.require_simpson(scene)?;
         let plane = ViewPlane::new(&scene.camera, scene.image);
-        let sources = Sources::new(scene, plane.eye, plane.ray_length);
+        // The corner pixels are the farthest from the eye.
+        let reach = plane.first_pixel.length() + plane.ray_length;
+        let sources = Sources::new(scene, plane.eye, reach, plane.ray_length);
         let view = pack::view(&plane, scene.image.width, scene.integration.softening);
         self.upload(scene, view, sources, None)
     }
@@ -123,7 +125,9 @@ impl OpenClRenderer {
         }
         let origin = rays.first().map_or(glam::DVec3::ZERO, |ray| ray.origin);
         let records: Vec<_> = rays.iter().map(|ray| pack::ray(ray, origin)).collect();
-        let sources = Sources::new(scene, origin, 1.0);
+        let far = |ray: &Ray| ray.origin.distance(origin) + ray.span.length();
+        let reach = rays.iter().map(far).fold(0.0, f64::max);
+        let sources = Sources::new(scene, origin, reach, 1.0);
         let view = layout::View {
             softening2: (scene.integration.softening * scene.integration.softening) as f32,
             ..bytemuck::Zeroable::zeroed()
@@ -196,7 +200,7 @@ impl OpenClRenderer {
             self.output()?.read(&self.compute, band)?;
             self.settle(last)?;
         }
-        Ok(())
+        self.settle_uploads()
     }
 
     /// Renders into the device's own buffer and maps it: on a CPU, nothing is copied.
@@ -214,12 +218,26 @@ impl OpenClRenderer {
         self.begin(&job);
         let last = self.launch_band(&job, 0..pixels as u32, &mut |_| ControlFlow::Continue(()))?;
         let pointer = self.output()?.map(&self.compute, pixels)?;
-        self.settle(last)?;
-        Ok(Mapped {
+        let mapped = Mapped {
             pointer,
             pixels,
             renderer: self,
-        })
+        };
+        mapped.renderer.settle(last)?;
+        mapped.renderer.settle_uploads()?;
+        Ok(mapped)
+    }
+
+    /// A copy that failed means a wrong image: it is asked for when everything is over.
+    fn settle_uploads(&mut self) -> Result<()> {
+        let (lists, compute) = (&mut self.lists, &self.compute);
+        lists.nodes.settle(compute)?;
+        lists.spheres.settle(compute)?;
+        lists.cylinders.settle(compute)?;
+        lists.tori.settle(compute)?;
+        lists.curves.settle(compute)?;
+        lists.spline_pieces.settle(compute)?;
+        lists.rays.settle(compute)
     }
 
     fn begin(&mut self, job: &Job) {

@@ -26,7 +26,7 @@ pub(super) fn curve(
     let middle = 0.25 * b0 + 0.5 * b1 + 0.25 * b2;
     let velocity = b2 - b0; // C'(1/2)
     let bend = c2.length();
-    let far = TINY * (frame.ray_length + middle.distance(frame.origin));
+    let far = TINY * (frame.reach + middle.distance(frame.origin));
     let is_straight = bend <= STRAIGHT * velocity.length() || bend < far;
     // `across` follows C2 where there is any; what lies perpendicular to the velocity serves the rest.
     let across = c2

@@ -28,7 +28,7 @@ pub struct Sources {
 #[derive(Debug, Clone, Copy)]
 struct Frame {
     origin: DVec3,
-    ray_length: f64,
+    reach: f64,
     measure: f64,
 }
 
@@ -43,16 +43,16 @@ impl Frame {
 }
 
 impl Sources {
-    /// Packs all sources of a valid scene as seen from `origin`, world space. With [`Measure::Length`] every emission is
-    /// multiplied with `ray_length`, `|E - S|`.
-    pub fn new(scene: &Scene, origin: DVec3, ray_length: f64) -> Self {
+    /// Packs all sources of a valid scene as seen from `origin`, world space, for rays that stay within `reach` of it.
+    /// With [`Measure::Length`] every emission is multiplied with `ray_length`, `|E - S|`.
+    pub fn new(scene: &Scene, origin: DVec3, reach: f64, ray_length: f64) -> Self {
         let measure = match scene.integration.measure {
             Measure::Parameter => 1.0,
             Measure::Length => ray_length,
         };
         let frame = Frame {
             origin,
-            ray_length,
+            reach,
             measure,
         };
         let mut packed = Self {
