@@ -33,7 +33,10 @@ impl Cell {
     }
 }
 
+#[allow(unsafe_code)] // one call that must come before everything else
 fn main() {
+    // SAFETY: nothing has started a thread yet.
+    unsafe { energywave::opencl::keep_pocl_threads_apart() };
     let choice = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned());
     let device = Device::select(&choice).unwrap();
     let opencl: OpenClDevice = discover()

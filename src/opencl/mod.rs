@@ -1,6 +1,7 @@
 //! The OpenCL side: finding devices, building the kernels, buffers, launches. The one home of `unsafe`.
 #![allow(unsafe_code)] // calls into OpenCL are unsafe by nature; each block says why it is sound
 
+mod affinity;
 mod buffer;
 mod compute;
 mod discover;
@@ -11,6 +12,7 @@ mod program;
 mod renderer;
 mod source;
 
+pub use affinity::keep_pocl_threads_apart;
 pub use buffer::{DeviceBuffer, Uploaded};
 pub use compute::Compute;
 pub use discover::{Discovery, OpenClDevice, discover};
