@@ -4,15 +4,18 @@
 // Positions are seen from the eye (world axes, world units): float32 then resolves best where the rays are.
 #pragma once
 
-// The pixel grid on the projection plane, and the length of the rays that begin there.
+// The pixel grid on the projection plane, the length of the rays that begin there, and what is integrated along them.
 typedef struct {
-    float4 first_pixel; // from the eye to the centre of the pixel in column 0, row 0
-    float4 column_step; // from a pixel to its right neighbour
-    float4 row_step;    // from a pixel to the one below
-    float ray_length;   // |E - S|
-    float softening2;   // squared softening radius
-    uint width;         // pixels in a row
-    uint padding;
+    float4 first_pixel;   // from the eye to the centre of the pixel in column 0, row 0
+    float4 column_step;   // from a pixel to its right neighbour
+    float4 row_step;      // from a pixel to the one below
+    float ray_length;     // |E - S|
+    float softening2;     // squared softening radius
+    float decay_strength; // alpha / beta; 1 without decay
+    float decay_beta;     // 0 without decay
+    float threshold;      // method exact: how large unresolved coefficients may be, of the integral
+    uint width;           // pixels in a row
+    uint padding_0, padding_1;
 } View;
 
 // One launch: which pixels (or rays), and which part of each list of sources.

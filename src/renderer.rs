@@ -18,7 +18,7 @@ pub struct FrameCost {
     pub kernel: Duration,
     /// Integrals: pairs of a ray and a source.
     pub evaluations: u64,
-    /// Samples of fields.
+    /// Samples of fields; 0 where they were not counted: the method `exact` takes as many as it needs.
     pub field_evaluations: u64,
     /// Launches of kernels.
     pub launches: u32,
@@ -62,10 +62,10 @@ enum RendererBackend {
 }
 
 impl Renderer {
-    /// Makes a device ready: builds the kernels for it.
+    /// Opens a device. Kernels are built when a scene first needs them.
     ///
     /// # Errors
-    /// [`Error::Device`] or [`Error::Build`] if the driver refuses.
+    /// [`Error::Device`] if the driver refuses.
     pub fn new(device: &Device) -> Result<Self> {
         Self::with_options(device, &BuildOptions::default())
     }
@@ -87,18 +87,10 @@ impl Renderer {
         Ok(Self { backend })
     }
 
-    /// Whether the device has a method.
-    pub fn supports(&self, method: Method) -> bool {
-        match &self.backend {
-            RendererBackend::OpenCl(_) => method == Method::Simpson,
-            RendererBackend::Reference { .. } => true,
-        }
-    }
-
     /// The scene's linear radiance, RGBA.
     ///
     /// # Errors
-    /// [`Error::Scene`] if the scene is not valid, [`Error::Unsupported`] if the device lacks the scene's method,
+    /// [`Error::Scene`] if the scene is not valid; [`Error::Build`] if the kernels' compiler refuses;
     /// [`Error::OutOfMemory`], [`Error::Device`].
     pub fn render(&mut self, scene: &Scene) -> Result<RadianceImage> {
         self.render_with_progress(scene, &mut |_| ControlFlow::Continue(()))

@@ -64,31 +64,57 @@ curve_path curve_along(const Ray *const ray, const Sources *const sources, const
     return path;
 }
 
-// Squared distance from a point of the frame to C(1/2 + x), without softening.
-floatv curve_distance2(const curve_path *const path, const floatv along, const floatv across, const floatv normal,
-                       const floatv x) {
-    const floatv a = fma(-path->velocity_along, x, along);
-    const floatv b = fma(-fma(splat(path->bend), x, splat(path->velocity_across)), x, across);
-    return fma(a, a, fma(b, b, normal * normal));
+// A point of the ray in the curve's frame, seen from the core point C(1/2 + core), with its cubic.
+typedef struct {
+    floatv along, across, normal;
+    floatv p, h;
+    floatv core;
+} curve_point;
+
+INLINE curve_point curve_point_at(const curve_path *const path, const floatv s) {
+    const curve_point point = {linear_at(path->along, s), linear_at(path->across, s), linear_at(path->normal, s),
+                               linear_at(path->p, s),     linear_at(path->h, s),      splat(0.0f)};
+    return point;
 }
 
-// Nearest point of a curve that is all but straight: the foot on the tangent at C(1/2), corrected for the bend by
-// Newton steps; or an end, where the curve turns away.
-floatv nearest_on_straight(const curve_path *const path, const floatv along, const floatv across, const floatv normal,
-                           floatv *const distance2) {
-    const floatv to_foot = fma(along, path->velocity_along, across * path->velocity_across);
-    floatv x = clamp(to_foot * path->inverse_speed2, -0.5f, 0.5f);
+// From C(1/2 + x) to the point, in the plane of the curve.
+typedef struct {
+    floatv along, across;
+} curve_offset;
+
+INLINE curve_offset offset_from_curve(const curve_path *const path, const curve_point *const point, const floatv x) {
+    const floatv ahead = x - point->core;
+    const floatv chord_across = fma(splat(path->bend), x + point->core, splat(path->velocity_across));
+    const curve_offset offset = {fma(-path->velocity_along, ahead, point->along),
+                                 fma(-chord_across, ahead, point->across)};
+    return offset;
+}
+
+// Squared distance to C(1/2 + x), without softening.
+INLINE floatv curve_distance2(const curve_path *const path, const curve_point *const point, const floatv x) {
+    const curve_offset offset = offset_from_curve(path, point, x);
+    return fma(offset.along, offset.along, fma(offset.across, offset.across, point->normal * point->normal));
+}
+
+// Across component of C'(1/2 + x); the one along is velocity_along.
+floatv curve_velocity_across(const curve_path *const path, const floatv x) {
+    return fma(splat(2.0f * path->bend), x, splat(path->velocity_across));
+}
+
+// Nearest point of a curve that is all but straight: the foot on the tangent at the core point, corrected for the bend
+// by Newton steps; or an end, where the curve turns away.
+floatv nearest_on_straight(const curve_path *const path, const curve_point *const point, floatv *const distance2) {
+    const floatv to_foot = fma(point->along, path->velocity_along, point->across * path->velocity_across);
+    floatv x = clamp(fma(to_foot, path->inverse_speed2, point->core), -0.5f, 0.5f);
     for (int step = 0; step < 2; ++step) {
-        const floatv a = fma(-path->velocity_along, x, along);
-        const floatv b = fma(-fma(splat(path->bend), x, splat(path->velocity_across)), x, across);
-        const floatv velocity_across = fma(splat(2.0f * path->bend), x, splat(path->velocity_across));
-        const floatv slope = fma(a, path->velocity_along, b * velocity_across);
-        const floatv curvature = max(1.0f - 2.0f * path->bend * b * path->inverse_speed2, 0.25f);
+        const curve_offset offset = offset_from_curve(path, point, x);
+        const floatv slope = fma(offset.along, path->velocity_along, offset.across * curve_velocity_across(path, x));
+        const floatv curvature = max(1.0f - 2.0f * path->bend * offset.across * path->inverse_speed2, 0.25f);
         x = clamp(fma(slope / curvature, path->inverse_speed2, x), -0.5f, 0.5f);
     }
-    *distance2 = curve_distance2(path, along, across, normal, x);
+    *distance2 = curve_distance2(path, point, x);
     for (float end = -0.5f; end < 1.0f; end += 1.0f) {
-        const floatv to_end = curve_distance2(path, along, across, normal, splat(end));
+        const floatv to_end = curve_distance2(path, point, splat(end));
         x = select(x, splat(end), to_end < *distance2);
         *distance2 = min(*distance2, to_end);
     }
@@ -97,34 +123,36 @@ floatv nearest_on_straight(const curve_path *const path, const floatv along, con
 
 // x = t* - 1/2 of the nearest point, and its squared distance. The middle root of three is a greatest distance; the
 // outer ones, clamped to the curve, stand for its ends too. Of two equally near points the one with less t wins.
-INLINE floatv nearest_on_curve(const curve_path *const path, const floatv s, floatv *const distance2) {
-    const floatv along = linear_at(path->along, s);
-    const floatv across = linear_at(path->across, s);
-    const floatv normal = linear_at(path->normal, s);
+INLINE floatv nearest_on_curve(const curve_path *const path, const curve_point *const point, floatv *const distance2) {
     if (path->is_straight)
-        return nearest_on_straight(path, along, across, normal, distance2);
-    const floatv p = linear_at(path->p, s);
-    const floatv h = linear_at(path->h, s);
+        return nearest_on_straight(path, point, distance2);
+    const floatv p = point->p, h = point->h;
     const floatv discriminant = fma(p * p, p, h * h);
     const intv has_three = discriminant <= 0.0f;
     floatv nearest = clamp(single_root(p, h, discriminant) - path->vertex, -0.5f, 0.5f);
-    *distance2 = curve_distance2(path, along, across, normal, nearest);
+    *distance2 = curve_distance2(path, point, nearest);
     if (any_lane(has_three)) {
         floatv first, second;
         outer_roots(p, h, &first, &second);
         first = clamp(first - path->vertex, -0.5f, 0.5f);
         second = clamp(second - path->vertex, -0.5f, 0.5f);
-        const floatv to_first = curve_distance2(path, along, across, normal, first);
-        const floatv to_second = curve_distance2(path, along, across, normal, second);
+        const floatv to_first = curve_distance2(path, point, first);
+        const floatv to_second = curve_distance2(path, point, second);
         *distance2 = select(*distance2, min(to_first, to_second), has_three);
         nearest = select(nearest, select(first, second, to_second < to_first), has_three);
     }
     return nearest;
 }
 
+// Local intensity at C(1/2 + x).
+INLINE floatv curve_intensity(const curve_path *const path, const floatv x) {
+    return spline_at(path->pieces, path->spline_count, x + 0.5f);
+}
+
 INLINE floatv curve_field(const curve_path *const path, const floatv s) {
+    const curve_point point = curve_point_at(path, s);
     floatv distance2;
-    const floatv x = nearest_on_curve(path, s, &distance2);
+    const floatv x = nearest_on_curve(path, &point, &distance2);
     const floatv field = twice_inverse_sqrt(max(distance2 + path->softening2, path->floor2));
-    return path->spline_count ? field * spline_at(path->pieces, path->spline_count, x + 0.5f) : field;
+    return path->spline_count ? field * curve_intensity(path, x) : field;
 }

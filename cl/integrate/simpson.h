@@ -7,7 +7,9 @@
 #endif
 
 INLINE floatv JOIN(simpson_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
-                                    __global const Node *const nodes, const uint node_count) {
+                                    const Quadrature *const quadrature) {
+    __global const Node *const nodes = quadrature->nodes;
+    const uint node_count = quadrature->node_count;
     const JOIN(FIELD, _path) path = JOIN(FIELD, _along)(ray, sources, index);
     floatv integral = splat(0.0f);
     for (uint begin = 0; begin < node_count; begin += SIMPSON_BLOCK) {

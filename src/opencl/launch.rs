@@ -90,7 +90,7 @@ impl Part {
 /// What every pixel of a frame costs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Work {
-    /// Nodes of the quadrature.
+    /// Nodes of the quadrature, or about as many Simpson samples as its cost is worth.
     pub node_count: u32,
     /// Sources of all kinds.
     pub source_count: u64,

@@ -1,5 +1,6 @@
 //! Renders scenes on an OpenCL device: uploads what changed, launches the kernels, reads the image back.
 
+use std::collections::HashMap;
 use std::ops::{ControlFlow, Range};
 
 use opencl3::event::Event;
@@ -11,10 +12,10 @@ use super::program::{Argument, BuildOptions, Program, enqueue, run_time, set_arg
 use super::{Compute, DeviceBuffer, OpenClDevice, Uploaded};
 use crate::device::DeviceType;
 use crate::error::{Error, Result};
-use crate::pack::{self, Sources, layout};
+use crate::pack::{self, Rule, Sources, layout};
 use crate::ray::{Ray, ViewPlane};
 use crate::renderer::FrameCost;
-use crate::scene::{Method, Scene};
+use crate::scene::{Integration, Method, Scene};
 
 /// A pixel of the output: linear RGBA.
 type Pixel = [f32; 4];
@@ -23,8 +24,8 @@ type Pixel = [f32; 4];
 #[derive(Debug)]
 pub struct OpenClRenderer {
     options: BuildOptions,
-    render: Kernel,
-    trace: Option<Kernel>,
+    /// Built when they are first needed.
+    kernels: HashMap<Task, Kernel>,
     lanes: u32,
     lists: Lists,
     pub(super) output: Option<DeviceBuffer<Pixel>>,
@@ -33,11 +34,42 @@ pub struct OpenClRenderer {
     pub(super) compute: Compute,
 }
 
+/// What a kernel is built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Task {
+    method: Variant,
+    /// Single rays instead of an image's.
+    has_rays: bool,
+}
+
+/// A way to integrate that has kernels of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Variant {
+    Simpson,
+    Exact {
+        /// Gauss-Legendre nodes of a panel.
+        nodes: u32,
+    },
+}
+
+impl Variant {
+    fn of(integration: &Integration) -> Self {
+        match integration.method {
+            Method::Simpson => Self::Simpson,
+            Method::Exact => Self::Exact {
+                nodes: Rule::of(integration).nodes,
+            },
+        }
+    }
+}
+
 /// A launch under way.
 struct Launched {
     event: Event,
     integrals: u64,
     evaluations: f64,
+    /// Whether that is what it took, or an estimate.
+    is_counted: bool,
 }
 
 /// A larger output buffer would gain nothing; 8192x8192 pixels fit.
@@ -60,27 +92,24 @@ struct Job {
     view: layout::View,
     sources: Sources,
     work: Work,
-    has_rays: bool,
+    task: Task,
 }
 
 impl OpenClRenderer {
-    /// Builds the kernels for a device.
+    /// Opens a device. Kernels are built when a scene first needs them.
     ///
     /// # Errors
-    /// [`Error::Device`] or [`Error::Build`] if the driver refuses.
+    /// [`Error::Device`] if the driver refuses.
     pub fn new(device: &OpenClDevice, options: &BuildOptions) -> Result<Self> {
-        let compute = Compute::new(device)?;
-        let program = Program::build(&compute, &["render.cl"], options)?;
         Ok(Self {
-            render: program.kernel("render")?,
-            trace: None,
-            lanes: program.lanes,
+            kernels: HashMap::new(),
+            lanes: options.lanes.unwrap_or(device.lanes),
             lists: Lists::new(),
             output: None,
             pace: Pace::new(),
             cost: FrameCost::default(),
             options: options.clone(),
-            compute,
+            compute: Compute::new(device)?,
         })
     }
 
@@ -107,46 +136,43 @@ impl OpenClRenderer {
 
     /// Packs a frame and uploads what changed.
     fn job(&mut self, scene: &Scene) -> Result<Job> {
-        self.require_simpson(scene)?;
         let plane = ViewPlane::new(&scene.camera, scene.image);
         // The corner pixels are the farthest from the eye.
         let reach = plane.first_pixel.length() + plane.ray_length;
         let sources = Sources::new(scene, plane.eye, reach, plane.ray_length);
-        let view = pack::view(&plane, scene.image.width, scene.integration.softening);
+        let view = pack::view(&plane, scene);
         self.upload(scene, view, sources, None)
     }
 
     /// Linear RGBA along single rays; light is measured over the parameter s.
     pub(crate) fn trace(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<Pixel>> {
-        self.require_simpson(scene)?;
-        if self.trace.is_none() {
-            let program = Program::build(&self.compute, &["trace.cl"], &self.options)?;
-            self.trace = Some(program.kernel("trace")?);
-        }
         let origin = rays.first().map_or(glam::DVec3::ZERO, |ray| ray.origin);
         let records: Vec<_> = rays.iter().map(|ray| pack::ray(ray, origin)).collect();
         let far = |ray: &Ray| ray.origin.distance(origin) + ray.span.length();
         let reach = rays.iter().map(far).fold(0.0, f64::max);
         let sources = Sources::new(scene, origin, reach, 1.0);
-        let view = layout::View {
-            softening2: (scene.integration.softening * scene.integration.softening) as f32,
-            ..bytemuck::Zeroable::zeroed()
-        };
-        let job = self.upload(scene, view, sources, Some(&records))?;
+        let job = self.upload(scene, pack::view_of_rays(scene), sources, Some(&records))?;
         let mut radiances = vec![[0.0; 4]; rays.len()];
         self.run(&job, &mut radiances, &mut |_| ControlFlow::Continue(()))?;
         Ok(radiances)
     }
 
-    fn require_simpson(&self, scene: &Scene) -> Result<()> {
-        match scene.integration.method {
-            Method::Simpson => Ok(()),
-            Method::Exact => Err(Error::Unsupported(format!(
-                "{}: the method \"exact\" is not available on OpenCL devices yet; use --device reference, or --method \
-                 simpson",
-                self.device().name
-            ))),
+    /// Makes sure of a kernel.
+    fn prepare(&mut self, task: Task) -> Result<()> {
+        if self.kernels.contains_key(&task) {
+            return Ok(());
         }
+        let mut options = self.options.clone();
+        if let Variant::Exact { nodes } = task.method {
+            options.extra = format!("{} {}", Rule::definitions(nodes), options.extra);
+        }
+        let (file, name) = match task.has_rays {
+            false => ("render.cl", "render"),
+            true => ("trace.cl", "trace"),
+        };
+        let program = Program::build(&self.compute, &[file], &options)?;
+        self.kernels.insert(task, program.kernel(name)?);
+        Ok(())
     }
 
     fn upload(
@@ -156,7 +182,15 @@ impl OpenClRenderer {
         sources: Sources,
         rays: Option<&[layout::RayRecord]>,
     ) -> Result<Job> {
-        let nodes = pack::nodes(scene.integration.divisions, scene.decay);
+        let task = Task {
+            method: Variant::of(&scene.integration),
+            has_rays: rays.is_some(),
+        };
+        self.prepare(task)?;
+        let nodes = match task.method {
+            Variant::Simpson => pack::nodes(scene.integration.divisions, scene.decay),
+            Variant::Exact { .. } => Vec::new(),
+        };
         let lists = &mut self.lists;
         lists.nodes.upload(&self.compute, &nodes)?;
         lists.spheres.upload(&self.compute, &sources.spheres)?;
@@ -172,12 +206,15 @@ impl OpenClRenderer {
         Ok(Job {
             view,
             work: Work {
-                node_count: nodes.len() as u32,
+                node_count: match task.method {
+                    Variant::Simpson => nodes.len() as u32,
+                    Variant::Exact { nodes } => 8 * nodes,
+                },
                 source_count: source_count(&sources),
                 fewest_pixels: (256 * units).max(1024),
             },
             sources,
-            has_rays: rays.is_some(),
+            task,
         })
     }
 
@@ -284,10 +321,9 @@ impl OpenClRenderer {
     }
 
     fn launch(&self, job: &Job, part: &Part, slot: u32) -> Result<Launched> {
-        let kernel = match &self.trace {
-            Some(trace) if job.has_rays => trace,
-            _ => &self.render,
-        };
+        let kernel = self.kernels.get(&job.task).ok_or_else(|| {
+            Error::Unsupported("a kernel that was never built was launched".to_owned())
+        })?;
         let output = self.output()?;
         let launch = launch(part, slot, &job.sources, job.work.node_count);
         let lists = &self.lists;
@@ -302,7 +338,7 @@ impl OpenClRenderer {
             &lists.spline_pieces,
             output,
         ];
-        if job.has_rays {
+        if job.task.has_rays {
             arguments.push(&lists.rays);
         }
         set_arguments(&self.compute, kernel, &arguments)?;
@@ -317,6 +353,7 @@ impl OpenClRenderer {
             event: enqueue(&self.compute, kernel, items, group)?,
             integrals: part.pixels.len() as u64 * (part.sources.end - part.sources.start),
             evaluations: part.evaluations(&job.work),
+            is_counted: job.task.method == Variant::Simpson,
         })
     }
 
@@ -330,7 +367,9 @@ impl OpenClRenderer {
         self.cost.kernel += time;
         self.cost.launches += 1;
         self.cost.evaluations += launched.integrals;
-        self.cost.field_evaluations += launched.evaluations as u64;
+        if launched.is_counted {
+            self.cost.field_evaluations += launched.evaluations as u64;
+        }
         Ok(())
     }
 

@@ -36,14 +36,18 @@ macro_rules! device_structs {
 
 device_structs! {
     /// The pixel grid on the projection plane.
-    View [64] {
+    View [80] {
         first_pixel: [f32; 4] = 0,
         column_step: [f32; 4] = 16,
         row_step: [f32; 4] = 32,
         ray_length: f32 = 48,
         softening2: f32 = 52,
-        width: u32 = 56,
-        padding: u32 = 60,
+        decay_strength: f32 = 56,
+        decay_beta: f32 = 60,
+        threshold: f32 = 64,
+        width: u32 = 68,
+        padding_0: u32 = 72,
+        padding_1: u32 = 76,
     }
     /// One launch.
     Launch [64] {

@@ -2,8 +2,11 @@
 
 mod curve;
 pub mod layout;
+mod rule;
 
 use glam::DVec3;
+
+pub use rule::Rule;
 
 use crate::ray::{Ray, ViewPlane};
 use crate::reference::simpson_nodes;
@@ -86,16 +89,27 @@ impl Sources {
     }
 }
 
-/// The view plane as the kernels read it.
-pub fn view(plane: &ViewPlane, width: u32, softening: f64) -> layout::View {
+/// The view plane, and what is integrated along its rays, as the kernels read it.
+pub fn view(plane: &ViewPlane, scene: &Scene) -> layout::View {
     layout::View {
         first_pixel: vector(plane.first_pixel),
         column_step: vector(plane.column_step),
         row_step: vector(plane.row_step),
         ray_length: plane.ray_length as f32,
+        width: scene.image.width,
+        ..view_of_rays(scene)
+    }
+}
+
+/// What is integrated along single rays, as the kernels read it; the view itself plays no part.
+pub fn view_of_rays(scene: &Scene) -> layout::View {
+    let softening = scene.integration.softening;
+    layout::View {
         softening2: (softening * softening) as f32,
-        width,
-        padding: 0,
+        decay_strength: scene.decay.map_or(1.0, |decay| decay.alpha / decay.beta) as f32,
+        decay_beta: scene.decay.map_or(0.0, |decay| decay.beta) as f32,
+        threshold: Rule::of(&scene.integration).threshold,
+        ..bytemuck::Zeroable::zeroed()
     }
 }
 

@@ -1,0 +1,9 @@
+// The exact integral of the field named by FIELD, whose squared distance along a ray is a quadratic: in closed form.
+// Included once for every such field.
+
+INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
+                                  const Quadrature *const quadrature) {
+    const JOIN(FIELD, _path) path = JOIN(FIELD, _along)(ray, sources, index);
+    // Twice, because lengths are doubled.
+    return 2.0f * closed_form(&path.distance2, path.floor2, quadrature->decay, splat(0.0f), splat(1.0f));
+}

@@ -1,0 +1,73 @@
+// A panel of a ray, mapped so that its integrand is smooth: v takes the decay away (decay.h), v = v0 + w sinh u the
+// peak. v0 + i w is where the squared distance to the core, continued to complex s, becomes 0: past this point of the
+// core the field is as 1 / sqrt((v - v0)^2 + w^2), and constant in u. The map decides how many nodes are needed, not
+// what they add up to.
+#pragma once
+#include "../decay.h"
+#include "../elementary.h"
+#include "../ray.h"
+
+// A complex zero of the squared distance along the ray, as a parameter s.
+typedef struct {
+    floatv re, im; // im > 0
+} Peak;
+
+// Seen from the point `base` of the panel, so that nodes next to a core keep their digits.
+typedef struct {
+    floatv base;
+    floatv bend, stretch;   // s - base = x / (stretch - bend x), x the advance of v
+    floatv middle;          // of the peak: v0 less v(base)
+    floatv rising, falling; // w/2 e^u and w/2 e^-u in the panel's middle
+    floatv half_length;     // half the panel's length in u
+} Panel;
+
+// Of two peaks, the one closer to the panel in the complex plane.
+Peak nearer_peak(const Peak a, const Peak b, const floatv from, const floatv to) {
+    const floatv to_a = a.re - clamp(a.re, from, to), to_b = b.re - clamp(b.re, from, to);
+    const intv is_b = fma(to_b, to_b, b.im * b.im) < fma(to_a, to_a, a.im * a.im);
+    const Peak nearer = {select(a.re, b.re, is_b), select(a.im, b.im, is_b)};
+    return nearer;
+}
+
+// e^asinh(x)
+floatv exp_asinh(const floatv x) {
+    const floatv sum = fma(twice_sqrt(fma(x, x, splat(1.0f))), splat(0.5f), fabs(x));
+    return select(sum, inverse(sum), x < 0.0f);
+}
+
+// from < to, base between them.
+INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from, const floatv to, const floatv base) {
+    Panel panel;
+    panel.base = base;
+    const floatv near_base = nearness(decay, base);
+    const floatv begin = advance(decay, base, near_base, from, nearness(decay, from));
+    const floatv end = advance(decay, base, near_base, to, nearness(decay, to));
+    floatv width = peak.im;
+    panel.middle = peak.re - base;
+    panel.stretch = splat(1.0f), panel.bend = splat(0.0f);
+    if (decay.beta > 0.0f) {
+        panel.bend = near_base / decay.beta;
+        panel.stretch = near_base * panel.bend;
+        const floatv from_pole = peak.re + decay.beta;
+        const floatv per_size = inverse(fma(from_pole, from_pole, peak.im * peak.im));
+        panel.middle = near_base * fma(peak.im, peak.im, from_pole * panel.middle) * per_size;
+        width = decay.beta * peak.im * per_size;
+    }
+    // A peak farther away than the panel is long needs no map; a mild one keeps the panel's length in u away from 0.
+    const floatv length = end - begin;
+    panel.middle = clamp(panel.middle, begin - length, end + length);
+    width = clamp(width, 1e-8f * length, length);
+    const floatv per_width = inverse(width);
+    const floatv at_begin = exp_asinh((begin - panel.middle) * per_width);
+    const floatv at_end = exp_asinh((end - panel.middle) * per_width);
+    panel.half_length = 0.5f * logarithm(at_end * inverse(at_begin));
+    const floatv at_middle = 0.5f * twice_sqrt(at_begin * at_end);
+    panel.rising = 0.5f * width * at_middle;
+    panel.falling = 0.5f * width * inverse(at_middle);
+    return panel;
+}
+
+// s - base of the point that lies `x` ahead of the base in v.
+floatv parameter_of(const Panel *const panel, const floatv x) {
+    return x * inverse(fma(-panel->bend, x, panel->stretch));
+}

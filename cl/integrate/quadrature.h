@@ -1,0 +1,11 @@
+// What both methods know besides the ray and the source.
+#pragma once
+#include "../decay.h"
+#include "../types.h"
+
+typedef struct {
+    __global const Node *nodes; // of the Simpson rule
+    uint node_count;
+    Decay decay;
+    float threshold; // exact: how large unresolved coefficients may be, of the integral
+} Quadrature;

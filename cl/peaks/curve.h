@@ -1,0 +1,232 @@
+// Where a curve's field peaks along a ray, and where its nearest point jumps or reaches an end.
+//
+// Seen along the ray the curve is a plane parabola, and the ray a point: where they come closest solves a cubic
+// equation again. There the squared distance is about q(s) = e (s - s0)^2 + .., which has the field's value, slope and
+// curvature: e = |Q|^2 - (Q.C')^2 / (|C'|^2 - (P - C).C''), Q = E - S.
+#pragma once
+#include "../field/curve.h"
+#include "../integrate/closed_form.h"
+#include "../integrate/panel.h"
+
+typedef struct {
+    curve_path path;
+    floatv span2;         // |E - S|^2
+    floatv first, second; // parameters s of the closest approaches; the same where there is but one
+    floatv first_distance2, second_distance2;
+    intv are_two;
+} curve_peaks;
+
+// Outer roots of the depressed cubic; both are the single root where there is one.
+INLINE intv least_and_greatest_root(const floatv p, const floatv h, floatv *const least, floatv *const greatest) {
+    const floatv discriminant = fma(p * p, p, h * h);
+    const intv has_three = discriminant <= 0.0f;
+    const floatv single = single_root(p, h, discriminant);
+    *least = single, *greatest = single;
+    if (any_lane(has_three)) {
+        floatv low, high;
+        outer_roots(p, h, &low, &high);
+        *least = select(single, low, has_three);
+        *greatest = select(single, high, has_three);
+    }
+    return has_three;
+}
+
+// The parameter s at which the ray passes closest to C(1/2 + x), and its squared distance there.
+floatv closest_to_core(const curve_path *const path, const floatv span2, const floatv x, floatv *const distance2) {
+    curve_point origin = curve_point_at(path, splat(0.0f));
+    const curve_offset offset = offset_from_curve(path, &origin, x);
+    const floatv s = -fma(offset.along, path->along.slope,
+                          fma(offset.across, path->across.slope, origin.normal * path->normal.slope)) *
+                     inverse(span2);
+    const floatv a = fma(s, path->along.slope, offset.along), b = fma(s, path->across.slope, offset.across);
+    const floatv c = fma(s, path->normal.slope, origin.normal);
+    *distance2 = fma(a, a, fma(b, b, c * c));
+    return s;
+}
+
+curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
+    curve_peaks peaks;
+    peaks.path = curve_along(ray, sources, index);
+    const curve_path *const path = &peaks.path;
+    peaks.span2 = 4.0f * dot3(ray->span, ray->span);
+    const floatv per_length = 0.5f * twice_inverse_sqrt_(peaks.span2);
+    const floatv along = path->along.slope * per_length, across = path->across.slope * per_length;
+    const floatv normal = path->normal.slope * per_length;
+    floatv x_first, x_second;
+    if (path->is_straight) {
+        // The foot of the common perpendicular.
+        const floatv climb = fma(along, path->velocity_along, across * path->velocity_across);
+        const floatv to_origin = fma(path->along.at, along, fma(path->across.at, across, path->normal.at * normal));
+        const floatv speed2 = fma(-climb, climb, splat(1.0f / max(path->inverse_speed2, 1e-36f)));
+        const floatv foot = fma(path->along.at, path->velocity_along, path->across.at * path->velocity_across);
+        x_first = clamp(fma(-climb, to_origin, foot) * inverse(max(speed2, 1e-36f)), -0.5f, 0.5f);
+        x_second = x_first;
+        peaks.are_two = x_first > x_second;
+    } else {
+        // The cubic of the parabola seen along the ray, from its vertex, in units of the bend.
+        const float per_bend = 1.0f / path->bend, turn = path->velocity_along * per_bend;
+        const floatv x = fma(path->along.at, splat(per_bend), splat(turn * path->vertex));
+        const floatv y = fma(path->across.at, splat(per_bend), splat(path->vertex * path->vertex));
+        const floatv to_origin = fma(x, along, fma(y, across, path->normal.at * per_bend * normal));
+        const floatv x0 = fma(-to_origin, along, x), y0 = fma(-to_origin, across, y);
+        const floatv flat = max(fma(along, along, normal * normal), 1e-3f);
+        const floatv per_flat = inverse(flat);
+        const floatv shift = 0.5f * turn * along * across * per_flat;
+        const floatv linear_term = fma(splat(0.5f * turn * turn), fma(across, across, normal * normal), -y0) * per_flat;
+        const floatv last_term = -0.5f * turn * x0 * per_flat;
+        const floatv p = fma(-shift, shift, linear_term * (1.0f / 3.0f));
+        const floatv h = 0.5f * fma(shift, fma(-2.0f * shift, shift, linear_term), last_term);
+        const intv has_three = least_and_greatest_root(p, h, &x_first, &x_second);
+        x_first = clamp(x_first + shift - path->vertex, -0.5f, 0.5f);
+        x_second = clamp(x_second + shift - path->vertex, -0.5f, 0.5f);
+        peaks.are_two = has_three & (x_second - x_first > 1e-3f);
+    }
+    peaks.first = closest_to_core(path, peaks.span2, x_first, &peaks.first_distance2);
+    peaks.second = closest_to_core(path, peaks.span2, x_second, &peaks.second_distance2);
+    return peaks;
+}
+
+// Where a value that is linear along the ray is 0; 0 where it never is.
+floatv zero_of(const Linear value) {
+    const intv never = fabs(value.slope) < 1e-30f;
+    return select(-value.at / select(value.slope, splat(1.0f), never), splat(0.0f), never);
+}
+
+// (P - C).C' at an end of the curve, along the ray.
+Linear beyond_end(const curve_path *const path, const float x) {
+    const float velocity_across = fma(2.0f * path->bend, x, path->velocity_across);
+    const float end_along = path->velocity_along * x;
+    const float end_across = fma(path->bend, x, path->velocity_across) * x;
+    return linear(
+        fma(path->along.at - end_along, splat(path->velocity_along), (path->across.at - end_across) * velocity_across),
+        fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across));
+}
+
+// The ray's crossing of the plane through an end, where that end becomes the nearest point, or ceases to be.
+floatv end_cut(const curve_path *const path, const Linear beyond, const float x) {
+    const floatv s = zero_of(beyond);
+    const float velocity_across = fma(2.0f * path->bend, x, path->velocity_across);
+    const float speed2 = fma(path->velocity_along, path->velocity_along, velocity_across * velocity_across);
+    const float end_across = fma(path->bend, x, path->velocity_across) * x;
+    const floatv across = linear_at(path->across, s) - end_across;
+    return select(splat(0.0f), s, speed2 - 2.0f * path->bend * across > 0.0f);
+}
+
+// Where both ends are nearest points of their parts, and equally far.
+floatv ends_cut(const curve_path *const path, const Linear beyond_first, const Linear beyond_last) {
+    const Linear difference =
+        linear(fma(path->along.at, splat(path->velocity_along),
+                   (path->across.at - 0.25f * path->bend) * path->velocity_across),
+               fma(path->along.slope, splat(path->velocity_along), path->across.slope * path->velocity_across));
+    const floatv s = zero_of(difference);
+    return select(splat(0.0f), s, (linear_at(beyond_first, s) <= 0.0f) & (linear_at(beyond_last, s) >= 0.0f));
+}
+
+// Where the nearest point jumps across the parabola's axis; else between two close approaches.
+floatv middle_cut(const curve_peaks *const peaks) {
+    const curve_path *const path = &peaks->path;
+    const floatv between = select(splat(0.0f), 0.5f * (peaks->first + peaks->second), peaks->are_two);
+    if (path->is_straight)
+        return between;
+    const floatv s = zero_of(path->h);
+    const floatv reach2 = -3.0f * linear_at(path->p, s);
+    const float reach = min(0.5f - path->vertex, 0.5f + path->vertex);
+    return select(between, s, (reach2 > 0.0f) & (reach2 < reach * fabs(reach)));
+}
+
+// The ends of the panels, the last one first.
+uint curve_cuts(const curve_peaks *const peaks, floatv *const ends) {
+    const curve_path *const path = &peaks->path;
+    const Linear beyond_first = beyond_end(path, -0.5f), beyond_last = beyond_end(path, 0.5f);
+    const floatv a = clamp(end_cut(path, beyond_first, -0.5f), 0.0f, 1.0f);
+    const floatv b = clamp(end_cut(path, beyond_last, 0.5f), 0.0f, 1.0f);
+    const floatv c = clamp(ends_cut(path, beyond_first, beyond_last), 0.0f, 1.0f);
+    const floatv d = clamp(middle_cut(peaks), 0.0f, 1.0f);
+    const floatv less_ab = min(a, b), more_ab = max(a, b), less_cd = min(c, d), more_cd = max(c, d);
+    const floatv inner = max(less_ab, less_cd), outer = min(more_ab, more_cd);
+    ends[0] = splat(1.0f);
+    ends[1] = max(more_ab, more_cd);
+    ends[2] = max(inner, outer);
+    ends[3] = min(inner, outer);
+    ends[4] = min(less_ab, less_cd);
+    return 5;
+}
+
+// The panels on which one end of the curve is the nearest point throughout: points nearest to it form a convex set, so
+// both ends of the panel tell.
+INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, const floatv from, const floatv to,
+                         floatv *const integral) {
+    const curve_path *const path = &peaks->path;
+    const floatv inside = 1e-3f * (to - from);
+    const curve_point begin = curve_point_at(path, from + inside), end = curve_point_at(path, to - inside);
+    floatv distance2;
+    const floatv x_begin = nearest_on_curve(path, &begin, &distance2);
+    const floatv x_end = nearest_on_curve(path, &end, &distance2);
+    const intv is_closed = (fabs(x_begin) == 0.5f) & (x_begin == x_end);
+    *integral = splat(0.0f);
+    if (!any_lane(is_closed))
+        return is_closed;
+    floatv least;
+    const floatv nearest = closest_to_core(path, peaks->span2, x_begin, &least);
+    const floatv length = 0.5f * twice_sqrt(peaks->span2);
+    const Quadratic to_end = {length, -length * nearest, least + path->softening2};
+    // Lengths are doubled.
+    *integral = 2.0f * closed_form(&to_end, path->floor2, decay, from, to);
+    if (path->spline_count)
+        *integral *= curve_intensity(path, x_begin);
+    return is_closed;
+}
+
+// The curve beside a point of the ray: the path from there on, seen from the nearest point of the curve.
+typedef struct {
+    curve_path path;
+    floatv core;
+} curve_near;
+
+INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
+                                 floatv *const base) {
+    const curve_path *const path = &peaks->path;
+    const floatv per_span2 = inverse(peaks->span2);
+    const Peak first = {peaks->first, peaks->first_distance2 * per_span2};
+    const Peak second = {peaks->second, peaks->second_distance2 * per_span2};
+    const floatv to_first = first.re - clamp(first.re, from, to), to_second = second.re - clamp(second.re, from, to);
+    const intv is_second = fma(to_second, to_second, second.im) < fma(to_first, to_first, first.im);
+    *base = clamp(select(first.re, second.re, is_second), from, to);
+
+    const curve_point point = curve_point_at(path, *base);
+    floatv distance2;
+    const floatv x = nearest_on_curve(path, &point, &distance2);
+    const curve_offset offset = offset_from_curve(path, &point, x);
+    const floatv velocity_across = curve_velocity_across(path, x);
+    const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
+    const floatv facing = fma(-2.0f * path->bend, offset.across, speed2);
+    const floatv climb = fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across);
+    const floatv slid = climb * climb * inverse(max(max(facing, 1e-3f * speed2), 1e-30f));
+    const floatv curvature = max(select(peaks->span2, peaks->span2 - slid, fabs(x) < 0.5f), 1e-4f * peaks->span2);
+    const floatv slope =
+        fma(offset.along, path->along.slope, fma(offset.across, path->across.slope, point.normal * path->normal.slope));
+    const floatv per_curvature = inverse(curvature);
+    const floatv softened = distance2 + path->softening2;
+    const floatv lowest = max(fma(-slope * per_curvature, slope, softened), 1e-3f * softened);
+    peak->re = fma(-slope, per_curvature, *base);
+    peak->im = 0.5f * twice_sqrt(fma(lowest, per_curvature, 0.5f * path->floor2 * per_span2));
+
+    curve_near near = {*path, x};
+    near.path.along.at = offset.along;
+    near.path.across.at = offset.across;
+    near.path.normal.at = point.normal;
+    near.path.p.at = point.p;
+    near.path.h.at = point.h;
+    near.path.softening2 = path->softening2 + floored(softened, path->floor2) - softened;
+    return near;
+}
+
+// The field at s = base + x.
+INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
+    curve_point point = curve_point_at(&near->path, x);
+    point.core = near->core;
+    floatv distance2;
+    const floatv nearest = nearest_on_curve(&near->path, &point, &distance2);
+    const floatv field = twice_inverse_sqrt(max(distance2 + near->path.softening2, 0.5f * near->path.floor2));
+    return near->path.spline_count ? field * curve_intensity(&near->path, nearest) : field;
+}

@@ -1,0 +1,102 @@
+// Where the torus' field peaks along a ray. In complex s its squared distance (rho - R)^2 + z^2 is (rho - R + i z) (rho
+// - R - i z), which is 0 where rho^2 = (R + i z)^2, that is |P|^2 = R^2 + 2 i R z: a quadratic equation in s, P seen
+// from the ring's centre. Its two roots are the ray's two passes at the ring; beside the ring's axis, where rho has a
+// kink or nearly so, the ray is cut.
+#pragma once
+#include "../field/torus.h"
+#include "../integrate/panel.h"
+
+typedef struct {
+    torus_path path;
+    Peak first, second;
+} torus_peaks;
+
+torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Torus *const torus = &sources->tori[index];
+    torus_peaks peaks;
+    peaks.path = torus_along(ray, sources, index);
+    const float radius = torus->major_radius;
+    const float3v from_center = subtract3(ray->origin, uniform3(torus->center));
+    const floatv inverse_length = 0.5f * twice_inverse_sqrt_(dot3(ray->span, ray->span));
+    const float3v direction = scale3(ray->span, inverse_length);
+    const floatv to_nearest = -dot3(from_center, direction); // the point next to the centre, a length along the ray
+    const float3v nearest = fma3(direction, to_nearest, from_center);
+    const float3v axis = uniform3(torus->axis);
+    const floatv height = dot3(nearest, axis), climb = dot3(direction, axis);
+    const float3v across = cross3(direction, axis);
+
+    // s |E - S| = to_nearest + i R climb +- sqrt(re + i im)
+    const floatv re = fma(splat(radius * radius), dot3(across, across), -dot3(nearest, nearest));
+    const floatv im = 2.0f * radius * height;
+    const floatv size = 0.5f * twice_sqrt(max(fma(re, re, im * im), 1e-36f));
+    const floatv larger = 0.5f * twice_sqrt(max(0.5f * (size + fabs(re)), 1e-18f));
+    const floatv smaller = 0.5f * im * inverse(larger);
+    const floatv root_re = select(fabs(smaller), larger, re > 0.0f);
+    const floatv root_im = select(copysign(larger, im), smaller, re > 0.0f);
+    const floatv blur2 = ray->softening2 + 0.5f * ray->floor2;
+    const floatv first = fma(splat(radius), climb, -root_im), second = fma(splat(radius), climb, root_im);
+    peaks.first.re = (to_nearest - root_re) * inverse_length;
+    peaks.second.re = (to_nearest + root_re) * inverse_length;
+    peaks.first.im = 0.5f * twice_sqrt(fma(first, first, blur2)) * inverse_length;
+    peaks.second.im = 0.5f * twice_sqrt(fma(second, second, blur2)) * inverse_length;
+    return peaks;
+}
+
+// The ends of the panels, the last one first.
+uint torus_cuts(const torus_peaks *const peaks, floatv *const ends) {
+    const Quadratic *const rho2 = &peaks->path.rho2;
+    ends[0] = splat(1.0f);
+    ends[1] = clamp(-rho2->offset * inverse(rho2->slope), 0.0f, 1.0f);
+    return 2;
+}
+
+// No part of a ray has a closed form.
+INLINE intv torus_closed(const torus_peaks *const peaks, const Decay decay, const floatv from, const floatv to,
+                         floatv *const integral) {
+    *integral = splat(0.0f);
+    return from > to;
+}
+
+// The field beside a point of the ray. rho^2 - R^2 is a polynomial there that loses no digits at the ring. Lengths are
+// doubled.
+typedef struct {
+    floatv across, across_slope, rho2_least; // rho^2 = (across + slope x)^2 + least
+    floatv excess, excess_slope;             // rho^2 - R^2 and its derivative
+    floatv height, height_slope;
+    float major_radius;
+    floatv softening2, floor2;
+} torus_near;
+
+INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
+                                 floatv *const base) {
+    const torus_path *const path = &peaks->path;
+    *peak = nearer_peak(peaks->first, peaks->second, from, to);
+    *base = clamp(peak->re, from, to);
+    torus_near near;
+    near.across = 2.0f * fma(path->rho2.slope, *base, path->rho2.offset);
+    near.across_slope = 2.0f * path->rho2.slope;
+    near.rho2_least = 4.0f * path->rho2.least;
+    near.major_radius = path->major_radius;
+    near.excess = fma(near.across, near.across, near.rho2_least - path->major_radius * path->major_radius);
+    near.excess_slope = 2.0f * near.across * near.across_slope;
+    near.height = fma(path->height_slope, *base, path->height);
+    near.height_slope = path->height_slope;
+    const floatv rho = 0.5f * twice_sqrt(fma(near.across, near.across, near.rho2_least));
+    const floatv from_ring = near.excess * inverse(rho + near.major_radius);
+    const floatv distance2 = fma(from_ring, from_ring, fma(near.height, near.height, path->softening2));
+    near.softening2 = path->softening2 + floored(distance2, path->floor2) - distance2;
+    near.floor2 = 0.5f * path->floor2;
+    return near;
+}
+
+// The field at s = base + x.
+INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
+    const floatv across = fma(near->across_slope, x, near->across);
+    const floatv rho = 0.5f * twice_sqrt(fma(across, across, near->rho2_least));
+    const floatv curvature = near->across_slope * near->across_slope;
+    const floatv excess = fma(fma(curvature, x, near->excess_slope), x, near->excess);
+    const floatv from_ring = excess * inverse(rho + near->major_radius);
+    const floatv height = fma(near->height_slope, x, near->height);
+    const floatv distance2 = fma(from_ring, from_ring, fma(height, height, near->softening2));
+    return twice_inverse_sqrt(max(distance2, near->floor2));
+}
