@@ -9,10 +9,11 @@
 typedef struct {
     float strength; // alpha / beta; 1 without decay
     float beta;     // 0 without decay
+    float per_beta; // 1 / beta; 0 without decay
 } Decay;
 
 Decay decay_of(const View *const view) {
-    const Decay decay = {view->decay_strength, view->decay_beta};
+    const Decay decay = {view->decay_strength, view->decay_beta, view->decay_per_beta};
     return decay;
 }
 
@@ -23,5 +24,5 @@ floatv nearness(const Decay decay, const floatv s) {
 
 // v(to) - v(from), from their nearness.
 floatv advance(const Decay decay, const floatv from, const floatv near_from, const floatv to, const floatv near_to) {
-    return decay.beta > 0.0f ? (to - from) * near_from * near_to / decay.beta : to - from;
+    return decay.beta > 0.0f ? (to - from) * near_from * near_to * decay.per_beta : to - from;
 }

@@ -23,15 +23,11 @@ floatv logarithm(const floatv x) {
     const intv bits = as_intv(x) - 0x3f3504f3;
     const floatv n = to_floatv(bits >> 23);
     const floatv m = as_floatv((bits & 0x007fffff) + 0x3f3504f3) - 1.0f;
-    floatv r = splat(7.0376836292e-2f);
-    r = fma(r, m, splat(-1.1514610310e-1f));
-    r = fma(r, m, splat(1.1676998740e-1f));
-    r = fma(r, m, splat(-1.2420140846e-1f));
-    r = fma(r, m, splat(1.4249322787e-1f));
-    r = fma(r, m, splat(-1.6668057665e-1f));
-    r = fma(r, m, splat(2.0000714765e-1f));
-    r = fma(r, m, splat(-2.4999993993e-1f));
-    r = fma(r, m, splat(3.3333331174e-1f));
-    const floatv m2 = m * m;
+    // Degree 8 in threes, for short chains of dependent operations.
+    const floatv m2 = m * m, m3 = m2 * m;
+    const floatv a = fma(fma(splat(2.0000714765e-1f), m, splat(-2.4999993993e-1f)), m, splat(3.3333331174e-1f));
+    const floatv b = fma(fma(splat(-1.2420140846e-1f), m, splat(1.4249322787e-1f)), m, splat(-1.6668057665e-1f));
+    const floatv c = fma(fma(splat(7.0376836292e-2f), m, splat(-1.1514610310e-1f)), m, splat(1.1676998740e-1f));
+    const floatv r = fma(fma(c, m3, b), m3, a);
     return fma(n, splat(0.693147181f), fma(m2, fma(r, m, splat(-0.5f)), m));
 }

@@ -1,64 +1,85 @@
 // Radiance of a ray: the sum of emission times integral over the sources (Watanabe, Abe, Konno 2015, eq. 18, 20). The
-// host chooses the method: with -D EXACT the integrals themselves, else the Simpson sums of the paper.
+// host chooses the method, with -D EXACT the integrals themselves, else the Simpson sums of the paper, and the kinds of
+// source that a scene has: what it has not costs it neither compiling nor registers.
 #pragma once
 #include "field/curve.h"
 #include "field/cylinder.h"
 #include "field/sphere.h"
 #include "field/torus.h"
+#include "integrate/closed_form.h"
+#include "integrate/panel.h"
 #include "integrate/quadrature.h"
+#include "peaks/curve.h"
+#include "peaks/torus.h"
+
+#ifdef SPHERES
+#define FIELD sphere
+#ifdef EXACT
+#include "integrate/closed.h"
+#else
+#include "integrate/simpson.h"
+#endif
+#undef FIELD
+#endif
+
+#ifdef CYLINDERS
+#define FIELD cylinder
+#ifdef EXACT
+#include "integrate/closed.h"
+#else
+#include "integrate/simpson.h"
+#endif
+#undef FIELD
+#endif
+
+#ifdef TORI
+#define FIELD torus
+#ifdef EXACT
+#include "integrate/exact.h"
+#else
+#include "integrate/simpson.h"
+#endif
+#undef FIELD
+#endif
+
+#ifdef CURVES
+#define FIELD curve
+#ifdef EXACT
+#include "integrate/exact.h"
+#else
+#include "integrate/simpson.h"
+#endif
+#undef FIELD
+#endif
 
 #ifdef EXACT
 #define METHOD exact_
-#include "integrate/closed_form.h"
-#include "peaks/curve.h"
-#include "peaks/torus.h"
-#define FIELD sphere
-#include "integrate/closed.h"
-#undef FIELD
-#define FIELD cylinder
-#include "integrate/closed.h"
-#undef FIELD
-#define FIELD torus
-#include "integrate/exact.h"
-#undef FIELD
-#define FIELD curve
-#include "integrate/exact.h"
-#undef FIELD
 #else
 #define METHOD simpson_
-#define FIELD sphere
-#include "integrate/simpson.h"
-#undef FIELD
-#define FIELD cylinder
-#include "integrate/simpson.h"
-#undef FIELD
-#define FIELD torus
-#include "integrate/simpson.h"
-#undef FIELD
-#define FIELD curve
-#include "integrate/simpson.h"
-#undef FIELD
 #endif
+
+// Adds the light of the sources of one kind that a launch names.
+#define ADD_LIGHT(kind, list)                                                                                          \
+    for (uint i = launch->kind##_begin; i < launch->kind##_end; ++i) {                                                 \
+        const floatv integral = JOIN(METHOD, kind)(ray, sources, i, quadrature);                                       \
+        radiance = fma3(uniform3(sources->list[i].emission), integral, radiance);                                      \
+    }
 
 // Linear RGB of the sources that a launch names, a ray in every lane.
 INLINE float3v radiance_along(const Ray *const ray, const Sources *const sources, const Quadrature *const quadrature,
                               const Launch *const launch) {
     float3v radiance = uniform3((float4)(0.0f));
-    for (uint i = launch->sphere_begin; i < launch->sphere_end; ++i) {
-        const floatv integral = JOIN(METHOD, sphere)(ray, sources, i, quadrature);
-        radiance = fma3(uniform3(sources->spheres[i].emission), integral, radiance);
-    }
-    for (uint i = launch->cylinder_begin; i < launch->cylinder_end; ++i) {
-        const floatv integral = JOIN(METHOD, cylinder)(ray, sources, i, quadrature);
-        radiance = fma3(uniform3(sources->cylinders[i].emission), integral, radiance);
-    }
-    for (uint i = launch->torus_begin; i < launch->torus_end; ++i) {
-        const floatv integral = JOIN(METHOD, torus)(ray, sources, i, quadrature);
-        radiance = fma3(uniform3(sources->tori[i].emission), integral, radiance);
-    }
-    for (uint i = launch->curve_begin; i < launch->curve_end; ++i) {
-        const floatv integral = JOIN(METHOD, curve)(ray, sources, i, quadrature);
-        radiance = fma3(uniform3(sources->curves[i].emission), integral, radiance);
-    }
+#ifdef SPHERES
+    ADD_LIGHT(sphere, spheres)
+#endif
+#ifdef CYLINDERS
+    ADD_LIGHT(cylinder, cylinders)
+#endif
+#ifdef TORI
+    ADD_LIGHT(torus, tori)
+#endif
+#ifdef CURVES
+    ADD_LIGHT(curve, curves)
+#endif
     return radiance;
 }

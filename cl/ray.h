@@ -1,33 +1,55 @@
 // View rays: L(s) = S + s (E - S), s in [0,1] (Watanabe, Abe, Konno 2015, eq. 19), one in every lane.
 #pragma once
+#include "fine.h"
 #include "lanes.h"
 #include "roots.h"
 #include "types.h"
 
 typedef struct {
-    float3v origin;    // S, seen from the eye
-    float3v span;      // E - S
+    float3v origin;     // S, seen from the eye
+    float3v span;       // E - S
+    fine3v fine_origin; // S with more digits
+    fine3v fine_toward; // so is the direction: E - S = toward * stretch
+    floatv stretch;
+    floatv length;     // |E - S|
     floatv softening2; // added to every squared distance
     floatv floor2;     // no squared distance is taken below this: rays through a core stay finite
 } Ray;
 
-Ray make_ray(const float3v origin, const float3v span, const float softening2) {
-    const float floor2 = CORE_FLOOR * CORE_FLOOR;
-    const Ray ray = {origin, span, splat(softening2), floor2 * dot3(span, span)};
+INLINE Ray make_ray(const fine3v origin, const fine3v toward, const floatv stretch, const floatv length,
+                    const float softening2) {
+    Ray ray;
+    ray.origin = from_fine3(origin);
+    ray.span = scale3(from_fine3(toward), stretch);
+    ray.fine_origin = origin;
+    ray.fine_toward = toward;
+    ray.stretch = stretch;
+    ray.length = length;
+    ray.softening2 = splat(softening2);
+    ray.floor2 = CORE_FLOOR * CORE_FLOOR * length * length;
     return ray;
 }
 
-// The rays through the centres of LANES consecutive pixels from this index on, row by row from the top left. One
-// division serves all lanes; those beyond the row's end wrap round to the next row.
-Ray pixel_ray(const View *const view, const uint first) {
-    uintv row = (uintv)(first / view->width);
+// The rays through the centres of LANES consecutive pixels from this index on, row by row from the top left. Lanes
+// beyond the row's end wrap round to the next row.
+INLINE Ray pixel_ray(const View *const view, const uint first) {
+    const uint row = first / view->width;
+    fine3v in_row = fine_step3(view->first_pixel, view->first_pixel_rest, view->row_step, view->row_step_rest, row);
     uintv column = first - row * view->width + LANE_NUMBERS;
     while (any_lane(column >= view->width)) {
-        row = select(row, row + 1, column >= view->width);
-        column = select(column, column - view->width, column >= view->width);
+        const uintv is_beyond = select((uintv)(0), (uintv)(1), column >= view->width);
+        in_row = fine_fma3(fine3(view->row_step, view->row_step_rest), count_to_finev(is_beyond), in_row);
+        column -= is_beyond * view->width;
     }
-    const float3v in_row = fma3(uniform3(view->row_step), to_floatv(row), uniform3(view->first_pixel));
-    const float3v origin = fma3(uniform3(view->column_step), to_floatv(column), in_row);
-    const float3v span = scale3(origin, 0.5f * view->ray_length * twice_inverse_sqrt_(dot3(origin, origin)));
-    return make_ray(origin, span, view->softening2);
+    const fine3v column_step = fine3(view->column_step, view->column_step_rest);
+    const fine3v origin = fine_fma3(column_step, count_to_finev(column), in_row);
+    const float3v toward = from_fine3(origin);
+    const floatv stretch = 0.5f * view->ray_length * twice_inverse_sqrt_(dot3(toward, toward));
+    return make_ray(origin, origin, stretch, splat(view->ray_length), view->softening2);
+}
+
+// L(s) - M, M given in two parts.
+INLINE fine3v fine_between(const Ray *const ray, const floatv s, const float4 m, const float4 m_rest) {
+    const fine3v from_m = fine_subtract3(ray->fine_origin, fine3(m, m_rest));
+    return fine_fma3(ray->fine_toward, to_finev(s * ray->stretch), from_m);
 }

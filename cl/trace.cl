@@ -3,13 +3,22 @@
 #include "ray.h"
 #include "store.h"
 
+// A vector and, four values on, its rest.
+fine3v gather_fine3(__global const float *const values, const intv at) {
+    const fine3v r = {to_finev(gather(values, at)) + to_finev(gather(values, at + 4)),
+                      to_finev(gather(values, at + 1)) + to_finev(gather(values, at + 5)),
+                      to_finev(gather(values, at + 2)) + to_finev(gather(values, at + 6))};
+    return r;
+}
+
 // The rays first .. first + count of a list; lanes beyond the end repeat the last one.
 Ray listed_ray(__global const RayRecord *const rays, const uintv index, const float softening2) {
     __global const float *const values = (__global const float *)rays;
     const intv at = as_intv(index) * (int)(sizeof(RayRecord) / sizeof(float));
-    const float3v origin = {gather(values, at), gather(values, at + 1), gather(values, at + 2)};
-    const float3v span = {gather(values, at + 4), gather(values, at + 5), gather(values, at + 6)};
-    return make_ray(origin, span, softening2);
+    const fine3v span = gather_fine3(values, at + 8);
+    const float3v toward = from_fine3(span);
+    const floatv length = 0.5f * twice_sqrt(dot3(toward, toward));
+    return make_ray(gather_fine3(values, at), span, splat(1.0f), length, softening2);
 }
 
 __kernel void trace(const View view, const Launch launch, __global const Node *const restrict nodes,

@@ -1,21 +1,24 @@
 // Every struct that crosses from the host to the device, and nothing else. src/pack/layout.rs mirrors this file in the
 // same order; the host passes each size as -D SIZEOF_X, checked below at every program build.
 //
-// Positions are seen from the eye (world axes, world units): float32 then resolves best where the rays are.
+// Positions are seen from the eye (world axes, world units): float32 then resolves best where the rays are. What
+// float32 leaves of a number stands in a field named `rest` (fine.h).
 #pragma once
 
 // The pixel grid on the projection plane, the length of the rays that begin there, and what is integrated along them.
 typedef struct {
-    float4 first_pixel;   // from the eye to the centre of the pixel in column 0, row 0
-    float4 column_step;   // from a pixel to its right neighbour
-    float4 row_step;      // from a pixel to the one below
+    float4 first_pixel; // from the eye to the centre of the pixel in column 0, row 0
+    float4 column_step; // from a pixel to its right neighbour
+    float4 row_step;    // from a pixel to the one below
+    float4 first_pixel_rest, column_step_rest, row_step_rest;
     float ray_length;     // |E - S|
     float softening2;     // squared softening radius
     float decay_strength; // alpha / beta; 1 without decay
     float decay_beta;     // 0 without decay
+    float decay_per_beta; // 1 / beta; 0 without decay
     float threshold;      // method exact: how large unresolved coefficients may be, of the integral
     uint width;           // pixels in a row
-    uint padding_0, padding_1;
+    uint padding;
 } View;
 
 // One launch: which pixels (or rays), and which part of each list of sources.
@@ -34,8 +37,8 @@ typedef struct {
 
 // A ray that is no pixel's: origin S, span E - S.
 typedef struct {
-    float4 origin;
-    float4 span;
+    float4 origin, origin_rest;
+    float4 span, span_rest;
 } RayRecord;
 
 // A quadrature node: parameter s, and its weight times the decay zeta(s).
@@ -46,30 +49,32 @@ typedef struct {
 
 // In all sources, emission is colour times coefficient, linear RGB (times |E - S| where light is measured by length).
 typedef struct {
-    float4 center;
+    float4 center, center_rest;
     float4 emission;
 } Sphere;
 
 typedef struct {
-    float4 point;     // the point of the line nearest to the eye
-    float4 direction; // unit
+    float4 point, point_rest;         // the point of the line nearest to the eye
+    float4 direction, direction_rest; // unit
     float4 emission;
 } Cylinder;
 
 typedef struct {
-    float4 center;
-    float4 axis; // unit
+    float4 center, center_rest;
+    float4 axis, axis_rest; // unit
     float4 emission;
-    float major_radius;
-    float padding_0, padding_1, padding_2;
+    float major_radius, major_radius_rest;
+    float padding_0, padding_1;
 } Torus;
 
 // C(t) - C(1/2) = along * (velocity_along x) + across * (velocity_across x + bend x^2), with x = t - 1/2.
 typedef struct {
-    float4 middle; // C(1/2)
-    float4 along;  // unit, in the plane of the curve, perpendicular to C2
-    float4 across; // unit, in the plane of the curve, along C2
-    float4 normal; // unit, perpendicular to the plane
+    float4 middle, middle_rest;     // C(1/2)
+    float4 velocity, velocity_rest; // C'(1/2)
+    float4 second, second_rest;     // C2: C(t) = C(1/2) + C'(1/2) x + C2 x^2
+    float4 along;                   // unit, in the plane of the curve, perpendicular to C2
+    float4 across;                  // unit, in the plane of the curve, along C2
+    float4 normal;                  // unit, perpendicular to the plane
     float4 emission;
     float velocity_along;
     float velocity_across;

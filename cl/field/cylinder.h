@@ -12,11 +12,14 @@ typedef struct {
     floatv floor2;
 } cylinder_path;
 
-cylinder_path cylinder_along(const Ray *const ray, const Sources *const sources, const uint index) {
+INLINE cylinder_path cylinder_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Cylinder *const cylinder = &sources->cylinders[index];
     const float3v direction = uniform3(cylinder->direction);
     const float3v from_point = subtract3(ray->origin, uniform3(cylinder->point));
-    const Quadratic distance2 = squared_length_along(cross3(from_point, direction), cross3(ray->span, direction));
+    const float3v span = cross3(ray->span, direction);
+    Quadratic distance2 = squared_length_along(cross3(from_point, direction), span, length3(span));
+    const fine3v closest = fine_between(ray, nearest_along(&distance2), cylinder->point, cylinder->point_rest);
+    distance2.least = fine_squared_length(fine_cross3(closest, fine3(cylinder->direction, cylinder->direction_rest)));
     const cylinder_path path = {doubled(distance2, ray->softening2), 4.0f * ray->floor2};
     return path;
 }

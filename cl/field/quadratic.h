@@ -1,7 +1,7 @@
 // Squared distance from the points of a ray to a fixed point, or to a line seen along it: a quadratic in s, kept as
 // (slope s + offset)^2 + least, in which nothing cancels near the least distance.
 #pragma once
-#include "../lanes.h"
+#include "../fine.h"
 #include "../roots.h"
 
 typedef struct {
@@ -10,14 +10,22 @@ typedef struct {
     floatv least; // never 0: its root may be divided by
 } Quadratic;
 
-// |start + s span|^2
-Quadratic squared_length_along(const float3v start, const float3v span) {
-    const floatv span2 = max(dot3(span, span), 1e-36f);
-    const floatv slope = 0.5f * twice_sqrt(span2);
-    const floatv nearest = -dot3(start, span) * inverse(span2);
-    const float3v closest = fma3(span, nearest, start);
-    const Quadratic q = {slope, -slope * nearest, max(dot3(closest, closest), 1e-30f)};
+// |start + s span|^2 for a span of length `slope`.
+INLINE Quadratic squared_length_along(const float3v start, const float3v span, const floatv slope) {
+    const floatv per_slope = inverse(slope);
+    const floatv ahead = -dot3(start, span) * per_slope; // to the nearest point, a length
+    const float3v closest = fma3(span, ahead * per_slope, start);
+    const Quadratic q = {slope, -ahead, max(dot3(closest, closest), 1e-30f)};
     return q;
+}
+
+floatv length3(const float3v v) {
+    return 0.5f * twice_sqrt(max(dot3(v, v), 1e-36f));
+}
+
+// The parameter s of the least.
+floatv nearest_along(const Quadratic *const q) {
+    return -q->offset * inverse(q->slope);
 }
 
 // The same with all lengths doubled, softened.

@@ -11,9 +11,12 @@ typedef struct {
     floatv floor2;
 } sphere_path;
 
-sphere_path sphere_along(const Ray *const ray, const Sources *const sources, const uint index) {
-    const float3v center = uniform3(sources->spheres[index].center);
-    const Quadratic distance2 = squared_length_along(subtract3(ray->origin, center), ray->span);
+INLINE sphere_path sphere_along(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Sphere *const sphere = &sources->spheres[index];
+    const float3v from_center = subtract3(ray->origin, uniform3(sphere->center));
+    Quadratic distance2 = squared_length_along(from_center, ray->span, ray->length);
+    const fine3v closest = fine_between(ray, nearest_along(&distance2), sphere->center, sphere->center_rest);
+    distance2.least = fine_squared_length(closest);
     const sphere_path path = {doubled(distance2, ray->softening2), 4.0f * ray->floor2};
     return path;
 }

@@ -14,11 +14,12 @@ typedef struct {
     floatv softening2, floor2;
 } torus_path;
 
-torus_path torus_along(const Ray *const ray, const Sources *const sources, const uint index) {
+INLINE torus_path torus_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Torus *const torus = &sources->tori[index];
     const float3v axis = uniform3(torus->axis);
     const float3v from_center = subtract3(ray->origin, uniform3(torus->center));
-    const torus_path path = {squared_length_along(cross3(from_center, axis), cross3(ray->span, axis)),
+    const float3v span = cross3(ray->span, axis);
+    const torus_path path = {squared_length_along(cross3(from_center, axis), span, length3(span)),
                              2.0f * dot3(from_center, axis),
                              2.0f * dot3(ray->span, axis),
                              2.0f * torus->major_radius,

@@ -10,18 +10,12 @@
 #include "../elementary.h"
 #include "../field/quadratic.h"
 
-// (artanh(m) / m - 1) / m^2, from m^2 and from 1 - m^2, which the caller knows to all digits.
-floatv artanh_excess(const floatv m2, const floatv rest) {
+// (artanh(m) / m - 1) / m^2 for m^2 up to 0.2.
+floatv artanh_series(const floatv m2) {
     floatv series = splat(1.0f / 21.0f);
     for (int odd = 19; odd > 1; odd -= 2)
         series = fma(series, m2, splat(1.0f / odd));
-    const intv is_large = m2 > 0.2f;
-    if (!any_lane(is_large))
-        return series;
-    const floatv inverse_m = 0.5f * twice_inverse_sqrt_(max(m2, 0.1f));
-    const floatv sum = 1.0f + m2 * inverse_m;
-    const floatv artanh = 0.5f * logarithm(sum * sum * inverse(rest));
-    return select(series, fma(artanh, inverse_m, splat(-1.0f)) * inverse_m * inverse_m, is_large);
+    return series;
 }
 
 // A ray closer to the core than the floor f of all distances keeps the integral of its floored field when its least
@@ -30,7 +24,6 @@ floatv floored(const floatv least, const floatv floor2) {
     return max(least, fma(least, splat(0.459f), 0.541f * floor2));
 }
 
-// Squared distance in units that `scale` brings to world units: `scale` is 2 for doubled lengths.
 INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2, const Decay decay, const floatv from,
                           const floatv to) {
     const floatv least = floored(distance2->least, floor2);
@@ -40,8 +33,7 @@ INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2,
     const floatv d = advance(decay, from, n0, to, n1);
     const floatv f0 = 0.5f * n0 * twice_sqrt(fma(x0, x0, least));
     const floatv f1 = 0.5f * n1 * twice_sqrt(fma(x1, x1, least));
-    const floatv per_sum = inverse(f0 + f1);
-    const floatv ratio = d * per_sum;
+    const floatv ratio = d * inverse(f0 + f1);
 
     // f^2 = a v^2 + 2 b v + ..; without decay both are the squared slope.
     const floatv rate = decay.beta > 0.0f ? -decay.beta * distance2->slope : distance2->slope;
@@ -49,11 +41,22 @@ INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2,
     const floatv a = decay.beta > 0.0f ? fma(x_pole, x_pole, least) : rate * rate;
     const floatv b = rate * x_pole;
 
-    // 1 - m^2 = 2 (f0 f1 + g) / F^2, where (f0 f1)^2 - g^2 = least (rate D)^2.
-    const floatv f0f1 = f0 * f1;
+    // artanh(m) is half the logarithm of (F + sqrt(a) D)^2 / (F^2 - a D^2), where F^2 - a D^2 = 2 (f0 f1 + g) and (f0
+    // f1)^2 - g^2 = least (rate D)^2.
+    const floatv sum = f0 + f1, f0f1 = f0 * f1;
     const floatv g = n0 * n1 * fma(x0, x1, least);
-    const floatv turned = rate * rate * least * d * d * inverse(f0f1 + fabs(g));
-    const floatv rest = 2.0f * select(f0f1 + g, turned, g < 0.0f) * per_sum * per_sum;
-    const floatv excess = artanh_excess(a * ratio * ratio, max(rest, 1e-30f));
-    return 2.0f * decay.strength * ratio * fma(b * ratio, ratio * excess, 0.5f * (n0 + n1));
+    const intv is_between = g < 0.0f;
+    const floatv per_root = 0.5f * twice_inverse_sqrt_(max(a, 1e-30f));
+    const floatv whole = fma(a * per_root, d, sum);
+    const floatv turn = rate * d;
+    const floatv above = whole * whole * select(splat(1.0f), f0f1 - g, is_between);
+    const floatv below = 2.0f * select(f0f1 + g, least * turn * turn, is_between);
+    const floatv artanh = 0.5f * logarithm(above * inverse(max(below, 1e-36f)));
+    const floatv mean = 0.5f * (n0 + n1), per_a = per_root * per_root;
+    floatv integral = fma(ratio, fma(-b, per_a, mean), b * per_a * per_root * artanh);
+    const floatv m2 = a * ratio * ratio;
+    const intv is_small = m2 < 0.2f;
+    if (any_lane(is_small))
+        integral = select(integral, ratio * fma(b * ratio * ratio, artanh_series(m2), mean), is_small);
+    return 2.0f * decay.strength * integral;
 }

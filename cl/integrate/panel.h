@@ -46,7 +46,7 @@ INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from,
     panel.middle = peak.re - base;
     panel.stretch = splat(1.0f), panel.bend = splat(0.0f);
     if (decay.beta > 0.0f) {
-        panel.bend = near_base / decay.beta;
+        panel.bend = near_base * decay.per_beta;
         panel.stretch = near_base * panel.bend;
         const floatv from_pole = peak.re + decay.beta;
         const floatv per_size = inverse(fma(from_pole, from_pole, peak.im * peak.im));

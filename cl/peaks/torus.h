@@ -11,7 +11,7 @@ typedef struct {
     Peak first, second;
 } torus_peaks;
 
-torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
+INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Torus *const torus = &sources->tori[index];
     torus_peaks peaks;
     peaks.path = torus_along(ray, sources, index);

@@ -99,7 +99,7 @@ pub(super) struct Work {
 }
 
 /// Numbers of spheres, cylinders, tori and curves.
-fn counts(sources: &Sources) -> [u64; 4] {
+pub(super) fn counts(sources: &Sources) -> [u64; 4] {
     [
         sources.spheres.len() as u64,
         sources.cylinders.len() as u64,

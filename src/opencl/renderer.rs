@@ -6,7 +6,7 @@ use std::ops::{ControlFlow, Range};
 use opencl3::event::Event;
 use opencl3::kernel::Kernel;
 
-use super::launch::{Pace, Part, Work, launch, source_count};
+use super::launch::{Pace, Part, Work, counts, launch, source_count};
 use super::mapped::Mapped;
 use super::program::{Argument, BuildOptions, Program, enqueue, run_time, set_arguments};
 use super::{Compute, DeviceBuffer, OpenClDevice, Uploaded};
@@ -38,9 +38,14 @@ pub struct OpenClRenderer {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Task {
     method: Variant,
+    /// Which kinds of source the scene has, in the order of [`KIND_OPTIONS`].
+    kinds: [bool; 4],
     /// Single rays instead of an image's.
     has_rays: bool,
 }
+
+/// What the kernels' compiler is told of the kinds of source that there are.
+const KIND_OPTIONS: [&str; 4] = [" -D SPHERES", " -D CYLINDERS", " -D TORI", " -D CURVES"];
 
 /// A way to integrate that has kernels of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -162,10 +167,19 @@ impl OpenClRenderer {
         if self.kernels.contains_key(&task) {
             return Ok(());
         }
-        let mut options = self.options.clone();
-        if let Variant::Exact { nodes } = task.method {
-            options.extra = format!("{} {}", Rule::definitions(nodes), options.extra);
+        let mut definitions = match task.method {
+            Variant::Simpson => String::new(),
+            Variant::Exact { nodes } => Rule::definitions(nodes),
+        };
+        for (option, is_there) in KIND_OPTIONS.into_iter().zip(task.kinds) {
+            if is_there {
+                definitions += option;
+            }
         }
+        let options = BuildOptions {
+            lanes: self.options.lanes,
+            extra: format!("{definitions} {}", self.options.extra),
+        };
         let (file, name) = match task.has_rays {
             false => ("render.cl", "render"),
             true => ("trace.cl", "trace"),
@@ -184,6 +198,7 @@ impl OpenClRenderer {
     ) -> Result<Job> {
         let task = Task {
             method: Variant::of(&scene.integration),
+            kinds: counts(&sources).map(|count| count > 0),
             has_rays: rays.is_some(),
         };
         self.prepare(task)?;

@@ -12,6 +12,7 @@ macro_rules! embed {
 embed!(
     "types.h",
     "lanes.h",
+    "fine.h",
     "roots.h",
     "elementary.h",
     "decay.h",

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::layout;
-use super::{Frame, vector};
+use super::{Frame, fine, vector};
 use crate::scene::Curve;
 
 /// Below this ratio of `|C2|` to `|C'(1/2)|` a curve counts as straight: the cubic's roots would lose digits to its
@@ -42,8 +42,14 @@ pub(super) fn curve(
         (along.normalize(), along.length())
     };
     let velocity_across = velocity.dot(across);
+    let (middle, world_velocity, second) = (frame.position(middle), fine(velocity), fine(c2));
     layout::Curve {
-        middle: frame.position(middle),
+        middle: middle.value,
+        middle_rest: middle.rest,
+        velocity: world_velocity.value,
+        velocity_rest: world_velocity.rest,
+        second: second.value,
+        second_rest: second.rest,
         along: vector(along),
         across: vector(across),
         normal: vector(along.cross(across)),

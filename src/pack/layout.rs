@@ -36,18 +36,21 @@ macro_rules! device_structs {
 
 device_structs! {
     /// The pixel grid on the projection plane.
-    View [80] {
+    View [128] {
         first_pixel: [f32; 4] = 0,
         column_step: [f32; 4] = 16,
         row_step: [f32; 4] = 32,
-        ray_length: f32 = 48,
-        softening2: f32 = 52,
-        decay_strength: f32 = 56,
-        decay_beta: f32 = 60,
-        threshold: f32 = 64,
-        width: u32 = 68,
-        padding_0: u32 = 72,
-        padding_1: u32 = 76,
+        first_pixel_rest: [f32; 4] = 48,
+        column_step_rest: [f32; 4] = 64,
+        row_step_rest: [f32; 4] = 80,
+        ray_length: f32 = 96,
+        softening2: f32 = 100,
+        decay_strength: f32 = 104,
+        decay_beta: f32 = 108,
+        decay_per_beta: f32 = 112,
+        threshold: f32 = 116,
+        width: u32 = 120,
+        padding: u32 = 124,
     }
     /// One launch.
     Launch [64] {
@@ -69,9 +72,11 @@ device_structs! {
         padding_2: u32 = 60,
     }
     /// A ray that is no pixel's.
-    RayRecord [32] {
+    RayRecord [64] {
         origin: [f32; 4] = 0,
-        span: [f32; 4] = 16,
+        origin_rest: [f32; 4] = 16,
+        span: [f32; 4] = 32,
+        span_rest: [f32; 4] = 48,
     }
     /// A quadrature node.
     Node [8] {
@@ -79,41 +84,51 @@ device_structs! {
         weight: f32 = 4,
     }
     /// A point of light.
-    Sphere [32] {
+    Sphere [48] {
         center: [f32; 4] = 0,
-        emission: [f32; 4] = 16,
+        center_rest: [f32; 4] = 16,
+        emission: [f32; 4] = 32,
     }
     /// A line of light.
-    Cylinder [48] {
+    Cylinder [80] {
         point: [f32; 4] = 0,
-        direction: [f32; 4] = 16,
-        emission: [f32; 4] = 32,
+        point_rest: [f32; 4] = 16,
+        direction: [f32; 4] = 32,
+        direction_rest: [f32; 4] = 48,
+        emission: [f32; 4] = 64,
     }
     /// A ring of light.
-    Torus [64] {
+    Torus [96] {
         center: [f32; 4] = 0,
-        axis: [f32; 4] = 16,
-        emission: [f32; 4] = 32,
-        major_radius: f32 = 48,
-        padding_0: f32 = 52,
-        padding_1: f32 = 56,
-        padding_2: f32 = 60,
+        center_rest: [f32; 4] = 16,
+        axis: [f32; 4] = 32,
+        axis_rest: [f32; 4] = 48,
+        emission: [f32; 4] = 64,
+        major_radius: f32 = 80,
+        major_radius_rest: f32 = 84,
+        padding_0: f32 = 88,
+        padding_1: f32 = 92,
     }
     /// A quadratic curve of light.
-    Curve [112] {
+    Curve [192] {
         middle: [f32; 4] = 0,
-        along: [f32; 4] = 16,
-        across: [f32; 4] = 32,
-        normal: [f32; 4] = 48,
-        emission: [f32; 4] = 64,
-        velocity_along: f32 = 80,
-        velocity_across: f32 = 84,
-        bend: f32 = 88,
-        vertex: f32 = 92,
-        is_straight: u32 = 96,
-        spline_begin: u32 = 100,
-        spline_count: u32 = 104,
-        padding: u32 = 108,
+        middle_rest: [f32; 4] = 16,
+        velocity: [f32; 4] = 32,
+        velocity_rest: [f32; 4] = 48,
+        second: [f32; 4] = 64,
+        second_rest: [f32; 4] = 80,
+        along: [f32; 4] = 96,
+        across: [f32; 4] = 112,
+        normal: [f32; 4] = 128,
+        emission: [f32; 4] = 144,
+        velocity_along: f32 = 160,
+        velocity_across: f32 = 164,
+        bend: f32 = 168,
+        vertex: f32 = 172,
+        is_straight: u32 = 176,
+        spline_begin: u32 = 180,
+        spline_count: u32 = 184,
+        padding: u32 = 188,
     }
     /// One piece of a quadratic B-spline.
     SplinePiece [16] {

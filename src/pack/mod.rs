@@ -36,8 +36,8 @@ struct Frame {
 }
 
 impl Frame {
-    fn position(&self, point: DVec3) -> [f32; 4] {
-        vector(point - self.origin)
+    fn position(&self, point: DVec3) -> Fine {
+        fine(point - self.origin)
     }
 
     fn emission(&self, coefficient: f64, color: DVec3) -> [f32; 4] {
@@ -91,10 +91,15 @@ impl Sources {
 
 /// The view plane, and what is integrated along its rays, as the kernels read it.
 pub fn view(plane: &ViewPlane, scene: &Scene) -> layout::View {
+    let [first_pixel, column_step, row_step] =
+        [plane.first_pixel, plane.column_step, plane.row_step].map(fine);
     layout::View {
-        first_pixel: vector(plane.first_pixel),
-        column_step: vector(plane.column_step),
-        row_step: vector(plane.row_step),
+        first_pixel: first_pixel.value,
+        column_step: column_step.value,
+        row_step: row_step.value,
+        first_pixel_rest: first_pixel.rest,
+        column_step_rest: column_step.rest,
+        row_step_rest: row_step.rest,
         ray_length: plane.ray_length as f32,
         width: scene.image.width,
         ..view_of_rays(scene)
@@ -108,6 +113,7 @@ pub fn view_of_rays(scene: &Scene) -> layout::View {
         softening2: (softening * softening) as f32,
         decay_strength: scene.decay.map_or(1.0, |decay| decay.alpha / decay.beta) as f32,
         decay_beta: scene.decay.map_or(0.0, |decay| decay.beta) as f32,
+        decay_per_beta: scene.decay.map_or(0.0, |decay| 1.0 / decay.beta) as f32,
         threshold: Rule::of(&scene.integration).threshold,
         ..bytemuck::Zeroable::zeroed()
     }
@@ -115,9 +121,12 @@ pub fn view_of_rays(scene: &Scene) -> layout::View {
 
 /// A ray as the kernels read it, its origin seen from `origin`.
 pub fn ray(ray: &Ray, origin: DVec3) -> layout::RayRecord {
+    let (origin, span) = (fine(ray.origin - origin), fine(ray.span));
     layout::RayRecord {
-        origin: vector(ray.origin - origin),
-        span: vector(ray.span),
+        origin: origin.value,
+        origin_rest: origin.rest,
+        span: span.value,
+        span_rest: span.rest,
     }
 }
 
@@ -132,8 +141,10 @@ pub fn nodes(divisions: u32, decay: Option<Decay>) -> Vec<layout::Node> {
 }
 
 fn sphere(frame: &Frame, sphere: &Sphere) -> layout::Sphere {
+    let center = frame.position(sphere.center);
     layout::Sphere {
-        center: frame.position(sphere.center),
+        center: center.value,
+        center_rest: center.rest,
         emission: frame.emission(sphere.coefficient, sphere.color),
     }
 }
@@ -142,22 +153,44 @@ fn cylinder(frame: &Frame, cylinder: &Cylinder) -> layout::Cylinder {
     let direction = cylinder.direction.normalize();
     let to_eye = frame.origin - cylinder.point;
     let nearest_to_eye = cylinder.point + direction * to_eye.dot(direction);
+    let (point, direction) = (frame.position(nearest_to_eye), fine(direction));
     layout::Cylinder {
-        point: frame.position(nearest_to_eye),
-        direction: vector(direction),
+        point: point.value,
+        point_rest: point.rest,
+        direction: direction.value,
+        direction_rest: direction.rest,
         emission: frame.emission(cylinder.coefficient, cylinder.color),
     }
 }
 
 fn torus(frame: &Frame, torus: &Torus) -> layout::Torus {
+    let (center, axis) = (frame.position(torus.center), fine(torus.axis.normalize()));
+    let major_radius = torus.major_radius as f32;
     layout::Torus {
-        center: frame.position(torus.center),
-        axis: vector(torus.axis.normalize()),
+        center: center.value,
+        center_rest: center.rest,
+        axis: axis.value,
+        axis_rest: axis.rest,
         emission: frame.emission(torus.coefficient, torus.color),
-        major_radius: torus.major_radius as f32,
+        major_radius,
+        major_radius_rest: (torus.major_radius - f64::from(major_radius)) as f32,
         padding_0: 0.0,
         padding_1: 0.0,
-        padding_2: 0.0,
+    }
+}
+
+/// A vector as two of float32.
+#[derive(Debug, Clone, Copy)]
+struct Fine {
+    value: [f32; 4],
+    rest: [f32; 4],
+}
+
+fn fine(v: DVec3) -> Fine {
+    let value = v.as_vec3();
+    Fine {
+        value: vector(v),
+        rest: vector(v - value.as_dvec3()),
     }
 }
 
