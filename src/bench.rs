@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
 use crate::renderer::{FrameCost, Renderer};
-use crate::scene::{Camera, Curve, Decay, ImageSize, Method, Scene, Torus};
+use crate::scene::{Camera, Curve, Decay, ImageSize, Measure, Method, Scene, Torus};
 
 /// Camera positions of one turn around the scene.
 pub const FRAMES_PER_TURN: u32 = 64;
@@ -172,6 +172,20 @@ pub fn measure(renderer: &mut Renderer, scene: &Scene, time: Duration) -> Result
         frame: last as u32,
         image,
     })
+}
+
+/// Makes a scene show, built with the option `-D COUNT_NODES`, how many nodes each pixel takes: every source counts once.
+pub fn count_instead_of_light(scene: &mut Scene) {
+    let one = (1.0, DVec3::ONE);
+    for source in &mut scene.tori {
+        (source.coefficient, source.color) = one;
+    }
+    for source in &mut scene.curves {
+        (source.coefficient, source.color) = one;
+    }
+    scene.spheres.clear();
+    scene.cylinders.clear();
+    scene.integration.measure = Measure::Parameter;
 }
 
 fn median(times: &mut [Duration]) -> Result<Duration> {

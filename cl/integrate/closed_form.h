@@ -18,12 +18,6 @@ floatv artanh_series(const floatv m2) {
     return series;
 }
 
-// A ray closer to the core than the floor f of all distances keeps the integral of its floored field when its least
-// squared distance h^2 is replaced by this one, within 0.03 f^2.
-floatv floored(const floatv least, const floatv floor2) {
-    return max(least, fma(least, splat(0.459f), 0.541f * floor2));
-}
-
 INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2, const Decay decay, const floatv from,
                           const floatv to) {
     const floatv least = floored(distance2->least, floor2);

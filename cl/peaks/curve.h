@@ -14,6 +14,8 @@ typedef struct {
     floatv first, second; // parameters s of the closest approaches; the same where there is but one
     floatv first_distance2, second_distance2;
     intv are_two;
+    const Ray *ray;
+    __global const Curve *curve;
 } curve_peaks;
 
 // Outer roots of the depressed cubic; both are the single root where there is one.
@@ -47,6 +49,8 @@ floatv closest_to_core(const curve_path *const path, const floatv span2, const f
 curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
     curve_peaks peaks;
     peaks.path = curve_along(ray, sources, index);
+    peaks.ray = ray;
+    peaks.curve = &sources->curves[index];
     const curve_path *const path = &peaks.path;
     peaks.span2 = 4.0f * dot3(ray->span, ray->span);
     const floatv per_length = 0.5f * twice_inverse_sqrt_(peaks.span2);
@@ -177,6 +181,21 @@ INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, cons
     return is_closed;
 }
 
+// L(s) - C(1/2 + x) in the curve's frame, doubled.
+INLINE float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
+    __global const Curve *const curve = peaks->curve;
+    const finev back = to_finev(-x);
+    const fine3v from_middle = fine_between(peaks->ray, s, curve->middle, curve->middle_rest);
+    const fine3v velocity = fine3(curve->velocity, curve->velocity_rest);
+    const fine3v second = fine3(curve->second, curve->second_rest);
+    // C(1/2) - C(1/2 + x) = -x (C'(1/2) + x C2)
+    const fine3v chord = fine_fma3(second, -back, velocity);
+    const float3v offset = from_fine3(fine_fma3(chord, back, from_middle));
+    const float3v in_frame = {2.0f * dot3(offset, uniform3(curve->along)), 2.0f * dot3(offset, uniform3(curve->across)),
+                              2.0f * dot3(offset, uniform3(curve->normal))};
+    return in_frame;
+}
+
 // The curve beside a point of the ray: the path from there on, seen from the nearest point of the curve.
 typedef struct {
     curve_path path;
@@ -196,15 +215,16 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     const curve_point point = curve_point_at(path, *base);
     floatv distance2;
     const floatv x = nearest_on_curve(path, &point, &distance2);
-    const curve_offset offset = offset_from_curve(path, &point, x);
+    const float3v offset = offset_from_core(peaks, *base, x);
+    distance2 = dot3(offset, offset);
     const floatv velocity_across = curve_velocity_across(path, x);
     const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
-    const floatv facing = fma(-2.0f * path->bend, offset.across, speed2);
+    const floatv facing = fma(-2.0f * path->bend, offset.y, speed2);
     const floatv climb = fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across);
     const floatv slid = climb * climb * inverse(max(max(facing, 1e-3f * speed2), 1e-30f));
     const floatv curvature = max(select(peaks->span2, peaks->span2 - slid, fabs(x) < 0.5f), 1e-4f * peaks->span2);
-    const floatv slope =
-        fma(offset.along, path->along.slope, fma(offset.across, path->across.slope, point.normal * path->normal.slope));
+    const float3v span = {path->along.slope, path->across.slope, path->normal.slope};
+    const floatv slope = dot3(offset, span);
     const floatv per_curvature = inverse(curvature);
     const floatv softened = distance2 + path->softening2;
     const floatv lowest = max(fma(-slope * per_curvature, slope, softened), 1e-3f * softened);
@@ -212,12 +232,12 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     peak->im = 0.5f * twice_sqrt(fma(lowest, per_curvature, 0.5f * path->floor2 * per_span2));
 
     curve_near near = {*path, x};
-    near.path.along.at = offset.along;
-    near.path.across.at = offset.across;
-    near.path.normal.at = point.normal;
+    near.path.along.at = offset.x;
+    near.path.across.at = offset.y;
+    near.path.normal.at = offset.z;
     near.path.p.at = point.p;
     near.path.h.at = point.h;
-    near.path.softening2 = path->softening2 + floored(softened, path->floor2) - softened;
+    near.path.softening2 = path->softening2 + floored(lowest, path->floor2) - lowest;
     return near;
 }
 

@@ -9,12 +9,16 @@
 typedef struct {
     torus_path path;
     Peak first, second;
+    const Ray *ray;
+    __global const Torus *torus;
 } torus_peaks;
 
 INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Torus *const torus = &sources->tori[index];
     torus_peaks peaks;
     peaks.path = torus_along(ray, sources, index);
+    peaks.ray = ray;
+    peaks.torus = torus;
     const float radius = torus->major_radius;
     const float3v from_center = subtract3(ray->origin, uniform3(torus->center));
     const floatv inverse_length = 0.5f * twice_inverse_sqrt_(dot3(ray->span, ray->span));
@@ -72,19 +76,38 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     const torus_path *const path = &peaks->path;
     *peak = nearer_peak(peaks->first, peaks->second, from, to);
     *base = clamp(peak->re, from, to);
+    __global const Torus *const torus = peaks->torus;
+    const fine3v from_center = fine_between(peaks->ray, *base, torus->center, torus->center_rest);
+    const finev height = fine_dot3(from_center, fine3(torus->axis, torus->axis_rest));
+    const fine radius = (fine)torus->major_radius + (fine)torus->major_radius_rest;
     torus_near near;
+    near.height = 2.0f * from_finev(height);
+    near.excess = 4.0f * from_finev(fma(-height, height, fine_dot3(from_center, from_center)) - radius * radius);
     near.across = 2.0f * fma(path->rho2.slope, *base, path->rho2.offset);
     near.across_slope = 2.0f * path->rho2.slope;
     near.rho2_least = 4.0f * path->rho2.least;
     near.major_radius = path->major_radius;
-    near.excess = fma(near.across, near.across, near.rho2_least - path->major_radius * path->major_radius);
     near.excess_slope = 2.0f * near.across * near.across_slope;
-    near.height = fma(path->height_slope, *base, path->height);
     near.height_slope = path->height_slope;
     const floatv rho = 0.5f * twice_sqrt(fma(near.across, near.across, near.rho2_least));
     const floatv from_ring = near.excess * inverse(rho + near.major_radius);
-    const floatv distance2 = fma(from_ring, from_ring, fma(near.height, near.height, path->softening2));
-    near.softening2 = path->softening2 + floored(distance2, path->floor2) - distance2;
+    const floatv distance2 = fma(from_ring, from_ring, near.height * near.height);
+    near.softening2 = path->softening2;
+
+    // Next to the ring the root of the quadratic has too few digits: there the ring is straight.
+    const intv is_close = distance2 < 1e-4f * near.major_radius * near.major_radius;
+    if (any_lane(is_close)) {
+        const floatv from_ring_slope = 0.5f * near.excess_slope * inverse(rho);
+        const floatv slope2 = fma(from_ring_slope, from_ring_slope, near.height_slope * near.height_slope);
+        const floatv per_slope2 = inverse(max(slope2, 1e-30f));
+        const floatv ahead = -fma(from_ring, from_ring_slope, near.height * near.height_slope) * per_slope2;
+        const floatv aside = fma(from_ring, near.height_slope, -near.height * from_ring_slope);
+        const floatv least = fma(aside * per_slope2, aside, path->softening2);
+        const floatv lifted = floored(least, path->floor2);
+        near.softening2 += select(splat(0.0f), lifted - least, is_close);
+        peak->re = select(peak->re, *base + ahead, is_close);
+        peak->im = select(peak->im, 0.5f * twice_sqrt(lifted * per_slope2), is_close);
+    }
     near.floor2 = 0.5f * path->floor2;
     return near;
 }

@@ -12,17 +12,19 @@ use opencl3::program::Program as ClProgram;
 use super::failure::{code_name, failed};
 use super::{Compute, DeviceBuffer, Uploaded, source};
 use crate::error::{Error, Result};
-use crate::pack::layout;
+use crate::pack::{Rule, layout};
 use crate::reference::CORE_FLOOR;
 
 /// Environment variable with further options for the kernels' compiler, such as `-D NAME` or `-cl-opt-disable`.
 const OPTIONS_VARIABLE: &str = "ENERGYWAVE_BUILD_OPTIONS";
 
 /// How the kernels are built.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct BuildOptions {
     /// Lanes: 1, 4, 8 or 16; `None`: what suits the device.
     pub lanes: Option<u32>,
+    /// The quadrature of the method `exact`; `None`: what meets the scene's tolerance.
+    pub rule: Option<Rule>,
     /// Further options for the OpenCL compiler.
     pub extra: String,
 }

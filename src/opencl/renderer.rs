@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::pack::{self, Rule, Sources, layout};
 use crate::ray::{Ray, ViewPlane};
 use crate::renderer::FrameCost;
-use crate::scene::{Integration, Method, Scene};
+use crate::scene::{Method, Scene};
 
 /// A pixel of the output: linear RGBA.
 type Pixel = [f32; 4];
@@ -58,12 +58,10 @@ enum Variant {
 }
 
 impl Variant {
-    fn of(integration: &Integration) -> Self {
-        match integration.method {
+    fn of(method: Method, rule: Rule) -> Self {
+        match method {
             Method::Simpson => Self::Simpson,
-            Method::Exact => Self::Exact {
-                nodes: Rule::of(integration).nodes,
-            },
+            Method::Exact => Self::Exact { nodes: rule.nodes },
         }
     }
 }
@@ -177,8 +175,8 @@ impl OpenClRenderer {
             }
         }
         let options = BuildOptions {
-            lanes: self.options.lanes,
             extra: format!("{definitions} {}", self.options.extra),
+            ..self.options.clone()
         };
         let (file, name) = match task.has_rays {
             false => ("render.cl", "render"),
@@ -196,8 +194,13 @@ impl OpenClRenderer {
         sources: Sources,
         rays: Option<&[layout::RayRecord]>,
     ) -> Result<Job> {
+        let rule = self.options.rule.unwrap_or(Rule::of(&scene.integration));
+        let view = layout::View {
+            threshold: rule.threshold,
+            ..view
+        };
         let task = Task {
-            method: Variant::of(&scene.integration),
+            method: Variant::of(scene.integration.method, rule),
             kinds: counts(&sources).map(|count| count > 0),
             has_rays: rays.is_some(),
         };

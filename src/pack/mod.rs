@@ -114,7 +114,6 @@ pub fn view_of_rays(scene: &Scene) -> layout::View {
         decay_strength: scene.decay.map_or(1.0, |decay| decay.alpha / decay.beta) as f32,
         decay_beta: scene.decay.map_or(0.0, |decay| decay.beta) as f32,
         decay_per_beta: scene.decay.map_or(0.0, |decay| 1.0 / decay.beta) as f32,
-        threshold: Rule::of(&scene.integration).threshold,
         ..bytemuck::Zeroable::zeroed()
     }
 }

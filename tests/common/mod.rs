@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
 
 pub mod program;
+pub mod random;
 
 use energywave::image::{Difference, compare};
 use energywave::opencl::{Compute, OpenClDevice, discover};
@@ -42,6 +43,7 @@ pub fn options(lanes: u32, extra: &str) -> BuildOptions {
     BuildOptions {
         lanes: Some(lanes),
         extra: extra.to_owned(),
+        ..BuildOptions::default()
     }
 }
 

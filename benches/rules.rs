@@ -1,0 +1,88 @@
+//! Where the rules of the method `exact` come from (`src/pack/rule.rs`): error and cost of every number of nodes and
+//! every threshold, on random scenes of one ring or one curve. `cargo bench --bench rules`
+#![allow(clippy::unwrap_used, clippy::expect_used)] // a bench that fails stops
+
+#[path = "../tests/common/random.rs"]
+#[allow(dead_code)] // what the tests use besides
+mod random;
+
+use energywave::image::compare;
+use energywave::pack::Rule;
+use energywave::{BuildOptions, Device, RadianceImage, Renderer, Scene, reference};
+use random::{Kind, scene_of};
+
+const SCENES: u64 = 40;
+const SIZE: u32 = 48;
+const NODES: [u32; 5] = [4, 6, 8, 10, 12];
+const THRESHOLDS: [f32; 11] = [
+    1.0, 3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5,
+];
+
+fn renderer(rule: Rule, extra: &str) -> Renderer {
+    let choice = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned());
+    let options = BuildOptions {
+        rule: Some(rule),
+        extra: extra.to_owned(),
+        ..BuildOptions::default()
+    };
+    Renderer::with_options(&Device::select(&choice).unwrap(), &options).unwrap()
+}
+
+/// Relative errors of all pixels of all scenes, in rising order.
+fn errors(rule: Rule, scenes: &[(Scene, RadianceImage)]) -> Vec<f64> {
+    let mut renderer = renderer(rule, "");
+    let mut errors = Vec::new();
+    for (scene, expected) in scenes {
+        let image = renderer.render(scene).unwrap();
+        let pairs = image.as_slice().iter().zip(expected.as_slice());
+        let red = pairs.step_by(4);
+        errors.extend(red.map(|(a, b)| (f64::from(*a) / f64::from(*b) - 1.0).abs()));
+        assert!(compare(&image, expected).is_some());
+    }
+    errors.sort_by(f64::total_cmp);
+    errors
+}
+
+/// Nodes that an average pixel takes.
+fn nodes(rule: Rule, scenes: &[(Scene, RadianceImage)]) -> f64 {
+    let mut renderer = renderer(rule, "-D COUNT_NODES");
+    let counts = scenes.iter().map(|(scene, _)| {
+        let mut scene = scene.clone();
+        energywave::bench::count_instead_of_light(&mut scene);
+        let image = renderer.render(&scene).unwrap();
+        let sum: f64 = image.as_slice().iter().step_by(4).map(|n| f64::from(*n)).sum();
+        sum / scene.image.pixels() as f64
+    });
+    counts.sum::<f64>() / scenes.len() as f64
+}
+
+fn main() {
+    for kind in [Kind::Torus, Kind::Curve] {
+        let scenes: Vec<_> = (0..SCENES)
+            .map(|seed| {
+                let scene = scene_of(kind, seed, SIZE);
+                let expected = reference::render(&scene).unwrap();
+                (scene, expected)
+            })
+            .collect();
+        println!("{kind:?}: {SCENES} scenes of {SIZE}x{SIZE} pixels");
+        println!("nodes threshold   99 %    99.9 %       max  nodes a pixel");
+        for nodes_of_panel in NODES {
+            for threshold in THRESHOLDS {
+                let rule = Rule {
+                    nodes: nodes_of_panel,
+                    threshold,
+                };
+                let errors = errors(rule, &scenes);
+                let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize];
+                println!(
+                    "{nodes_of_panel:>5} {threshold:>9.0e} {:>6.0e} {:>9.1e} {:>9.1e} {:>14.1}",
+                    at(0.99),
+                    at(0.999),
+                    at(1.0),
+                    nodes(rule, &scenes)
+                );
+            }
+        }
+    }
+}
