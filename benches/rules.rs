@@ -13,9 +13,9 @@ use random::{Kind, scene_of};
 
 const SCENES: u64 = 40;
 const SIZE: u32 = 48;
-const NODES: [u32; 5] = [4, 6, 8, 10, 12];
-const THRESHOLDS: [f32; 11] = [
-    1.0, 3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5,
+const NODES: [u32; 4] = [4, 6, 8, 10];
+const THRESHOLDS: [f32; 10] = [
+    1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6,
 ];
 
 fn renderer(rule: Rule, extra: &str) -> Renderer {

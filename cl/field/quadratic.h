@@ -47,8 +47,8 @@ INLINE floatv floored(const floatv least, const floatv floor2) {
     if (!any_lane(is_below))
         return least;
     const floatv t = min(least * inverse(floor2), 1.0f);
-    const floatv raised = fma(
-        fma(fma(fma(splat(0.2287136f), t, splat(-0.2680140f)), t, splat(0.2481982f)), t, splat(0.2482847f)), t,
-        splat(0.5418592f));
+    const floatv raised =
+        fma(fma(fma(fma(splat(0.2287136f), t, splat(-0.2680140f)), t, splat(0.2481982f)), t, splat(0.2482847f)), t,
+            splat(0.5418592f));
     return select(least, raised * floor2, is_below);
 }

@@ -1,20 +1,22 @@
 // The integral of the field named by FIELD times the decay, to a relative error: Gauss-Legendre quadrature on mapped
 // panels (panel.h). Two null rules on the same nodes, the highest Legendre coefficients that they see, tell how well a
-// panel is resolved; one that is not is halved, in all lanes. Included once for every field that has no closed form.
+// panel is resolved; one that is not is cut in two, in all lanes. Included once for every field that has no closed
+// form.
 //
-// The host gives the positive nodes of the rule, their weights and those of the null rules as GAUSS_..., and as
-// `threshold` how large the coefficients may be, of the integral.
+// The host gives the positive nodes of the rule, the outermost first, their weights and those of the null rules as
+// GAUSS_..., and as `threshold` how large the coefficients may be, of the integral.
 
-// Panels that may be open at once, halvings of a ray's panels in all, and the length in s below which a panel is left
-// to the next one.
+// Panels that may be open at once, cuts of a ray's panels in all, and the length in s below which a panel is left to
+// the next one.
 #ifndef MOST_ENDS
 #define MOST_ENDS 24
-#define MOST_HALVINGS 64
+#define MOST_CUTS 64
 #define SHORTEST_PANEL 1e-6f
+#define BEYOND_NODES 0.03f
 #endif
 
-INLINE floatv JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay, const floatv from,
-                                     const floatv to, floatv *const unresolved2, floatv *const middle) {
+INLINE PanelSum JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay, const floatv from,
+                                       const floatv to) {
     const float node[GAUSS_PAIRS] = GAUSS_NODES;
     const float weight[GAUSS_PAIRS] = GAUSS_WEIGHTS;
     const float null_even[GAUSS_PAIRS] = GAUSS_NULL_EVEN;
@@ -24,12 +26,15 @@ INLINE floatv JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, con
     const JOIN(FIELD, _near) near = JOIN(FIELD, _approach)(peaks, from, to, &peak, &base);
     const Panel panel = mapped_panel(decay, peak, from, to, base);
     floatv sum = splat(0.0f), even = splat(0.0f), odd = splat(0.0f);
+    floatv first = base, last = base;
     for (int k = 0; k < GAUSS_PAIRS; ++k) {
         const floatv grown = exponential(panel.half_length * node[k]), shrunk = inverse(grown);
         const floatv right_up = panel.rising * grown, right_down = panel.falling * shrunk;
         const floatv left_up = panel.rising * shrunk, left_down = panel.falling * grown;
         const floatv right_s = parameter_of(&panel, panel.middle + (right_up - right_down));
         const floatv left_s = parameter_of(&panel, panel.middle + (left_up - left_down));
+        if (k == 0)
+            first += left_s, last += right_s;
         const floatv right = (right_up + right_down) * JOIN(FIELD, _near_field)(&near, right_s);
         const floatv left = (left_up + left_down) * JOIN(FIELD, _near_field)(&near, left_s);
         const floatv both = right + left;
@@ -38,9 +43,10 @@ INLINE floatv JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, con
         odd = fma(right - left, splat(null_odd[k]), odd);
     }
     const floatv scale = decay.strength * panel.half_length;
-    *unresolved2 = scale * scale * fma(even, even, odd * odd);
-    *middle = clamp(base + parameter_of(&panel, panel.middle + (panel.rising - panel.falling)), from, to);
-    return scale * sum;
+    const floatv middle = base + parameter_of(&panel, panel.middle + (panel.rising - panel.falling));
+    const PanelSum result = {scale * sum, scale * scale * fma(even, even, odd * odd), clamp(middle, from, to),
+                             JOIN(FIELD, _is_broken)(peaks, from, to, first, last)};
+    return result;
 }
 
 INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
@@ -49,9 +55,8 @@ INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sou
     const JOIN(FIELD, _peaks) peaks = JOIN(FIELD, _peaks_along)(ray, sources, index);
     floatv ends[MOST_ENDS];
     uint open = JOIN(FIELD, _cuts)(&peaks, ends);
-    uint halvings = MOST_HALVINGS;
+    uint cuts = 0, nodes = 0;
     floatv integral = splat(0.0f), from = splat(0.0f);
-    uint nodes = 0;
     while (open > 0) {
         const floatv to = ends[open - 1];
         const intv is_empty = to - from < SHORTEST_PANEL;
@@ -60,26 +65,25 @@ INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sou
             continue;
         }
         const floatv end = max(to, from + SHORTEST_PANEL);
-        floatv closed, unresolved2 = splat(0.0f), middle = from;
-        const intv is_closed = JOIN(FIELD, _closed)(&peaks, decay, from, end, &closed);
-        floatv value = closed;
-        if (any_lane(!(is_closed | is_empty))) {
-            const floatv open_value = JOIN(panel_of_, FIELD)(&peaks, decay, from, end, &unresolved2, &middle);
-            value = select(open_value, closed, is_closed);
+        floatv value;
+        const intv is_closed = JOIN(FIELD, _closed)(&peaks, decay, from, end, &value) | is_empty;
+        if (any_lane(!is_closed)) {
+            const PanelSum panel = JOIN(panel_of_, FIELD)(&peaks, decay, from, end);
             nodes += 2 * GAUSS_PAIRS;
+            value = select(panel.integral, value, is_closed);
+            const floatv allowed = quadrature->threshold * (integral + value);
+            const intv is_unseen = panel.is_broken & (BEYOND_NODES * value > allowed);
+            const intv is_rough = (panel.unresolved2 > allowed * allowed) | is_unseen;
+            if (cuts < MOST_CUTS && open < MOST_ENDS && any_lane(is_rough & !is_closed)) {
+                ends[open] = JOIN(FIELD, _split)(&peaks, from, end, panel.middle);
+                ++open;
+                ++cuts;
+                continue;
+            }
         }
-        value = select(value, splat(0.0f), is_empty);
-        const floatv allowed = quadrature->threshold * (integral + value);
-        const intv is_rough = (unresolved2 > allowed * allowed) & !(is_closed | is_empty);
-        if (halvings > 0 && open < MOST_ENDS && any_lane(is_rough)) {
-            ends[open] = middle;
-            ++open;
-            --halvings;
-        } else {
-            integral += value;
-            from = select(to, from, is_empty);
-            --open;
-        }
+        integral += select(value, splat(0.0f), is_empty);
+        from = select(to, from, is_empty);
+        --open;
     }
 #ifdef COUNT_NODES
     return splat((float)nodes);

@@ -21,6 +21,14 @@ typedef struct {
     floatv half_length;     // half the panel's length in u
 } Panel;
 
+// What the nodes of a panel make of it.
+typedef struct {
+    floatv integral;
+    floatv unresolved2; // the squared size of what the rule cannot tell from noise, of the same kind as the integral
+    floatv middle;      // where to cut the panel in two, as a parameter s
+    intv is_broken;     // whether it must be cut whatever the nodes say
+} PanelSum;
+
 // Of two peaks, the one closer to the panel in the complex plane.
 Peak nearer_peak(const Peak a, const Peak b, const floatv from, const floatv to) {
     const floatv to_a = a.re - clamp(a.re, from, to), to_b = b.re - clamp(b.re, from, to);

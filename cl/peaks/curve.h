@@ -116,23 +116,37 @@ floatv end_cut(const curve_path *const path, const Linear beyond, const float x)
     return select(splat(0.0f), s, speed2 - 2.0f * path->bend * across > 0.0f);
 }
 
+// Where the ray is equally far from C(1/2 + x) and C(1/2 + y), x and y apart; 0 where it never is. The difference of
+// the distances is small beside them, and where it is 0 the field may jump.
+INLINE floatv equidistant(const curve_peaks *const peaks, const floatv x, const floatv y) {
+    __global const Curve *const curve = peaks->curve;
+    const fine3v velocity = fine3(curve->velocity, curve->velocity_rest);
+    const fine3v second = fine3(curve->second, curve->second_rest);
+    const finev fine_x = to_finev(x), fine_y = to_finev(y);
+    const finev sum = fine_x + fine_y;
+    const finev half_squares = fma(fine_x, fine_x, fine_y * fine_y) * (finev)(0.5f);
+    const fine3v chord = fine_fma3(second, sum, velocity); // towards one from the other, in units of x - y
+    const fine3v origin = fine_between(peaks->ray, splat(0.0f), curve->middle, curve->middle_rest);
+    const fine3v from_middle = fine_fma3(velocity, -sum * (finev)(0.5f), fine_fma3(second, -half_squares, origin));
+    const floatv closing = peaks->ray->stretch * from_finev(fine_dot3(peaks->ray->fine_toward, chord));
+    const floatv gap = -from_finev(fine_dot3(from_middle, chord));
+    const intv never = fabs(closing) < 1e-30f;
+    return select(gap / select(closing, splat(1.0f), never), splat(0.0f), never);
+}
+
 // Where both ends are nearest points of their parts, and equally far.
-floatv ends_cut(const curve_path *const path, const Linear beyond_first, const Linear beyond_last) {
-    const Linear difference =
-        linear(fma(path->along.at, splat(path->velocity_along),
-                   (path->across.at - 0.25f * path->bend) * path->velocity_across),
-               fma(path->along.slope, splat(path->velocity_along), path->across.slope * path->velocity_across));
-    const floatv s = zero_of(difference);
+INLINE floatv ends_cut(const curve_peaks *const peaks, const Linear beyond_first, const Linear beyond_last) {
+    const floatv s = equidistant(peaks, splat(-0.5f), splat(0.5f));
     return select(splat(0.0f), s, (linear_at(beyond_first, s) <= 0.0f) & (linear_at(beyond_last, s) >= 0.0f));
 }
 
 // Where the nearest point jumps across the parabola's axis; else between two close approaches.
-floatv middle_cut(const curve_peaks *const peaks) {
+INLINE floatv middle_cut(const curve_peaks *const peaks) {
     const curve_path *const path = &peaks->path;
     const floatv between = select(splat(0.0f), 0.5f * (peaks->first + peaks->second), peaks->are_two);
     if (path->is_straight)
         return between;
-    const floatv s = zero_of(path->h);
+    const floatv s = equidistant(peaks, splat(-1.0f - path->vertex), splat(1.0f - path->vertex));
     const floatv reach2 = -3.0f * linear_at(path->p, s);
     const float reach = min(0.5f - path->vertex, 0.5f + path->vertex);
     return select(between, s, (reach2 > 0.0f) & (reach2 < reach * fabs(reach)));
@@ -144,7 +158,7 @@ uint curve_cuts(const curve_peaks *const peaks, floatv *const ends) {
     const Linear beyond_first = beyond_end(path, -0.5f), beyond_last = beyond_end(path, 0.5f);
     const floatv a = clamp(end_cut(path, beyond_first, -0.5f), 0.0f, 1.0f);
     const floatv b = clamp(end_cut(path, beyond_last, 0.5f), 0.0f, 1.0f);
-    const floatv c = clamp(ends_cut(path, beyond_first, beyond_last), 0.0f, 1.0f);
+    const floatv c = clamp(ends_cut(peaks, beyond_first, beyond_last), 0.0f, 1.0f);
     const floatv d = clamp(middle_cut(peaks), 0.0f, 1.0f);
     const floatv less_ab = min(a, b), more_ab = max(a, b), less_cd = min(c, d), more_cd = max(c, d);
     const floatv inner = max(less_ab, less_cd), outer = min(more_ab, more_cd);
@@ -161,7 +175,7 @@ uint curve_cuts(const curve_peaks *const peaks, floatv *const ends) {
 INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, const floatv from, const floatv to,
                          floatv *const integral) {
     const curve_path *const path = &peaks->path;
-    const floatv inside = 1e-3f * (to - from);
+    const floatv inside = 1e-4f * (to - from);
     const curve_point begin = curve_point_at(path, from + inside), end = curve_point_at(path, to - inside);
     floatv distance2;
     const floatv x_begin = nearest_on_curve(path, &begin, &distance2);
@@ -179,6 +193,58 @@ INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, cons
     if (path->spline_count)
         *integral *= curve_intensity(path, x_begin);
     return is_closed;
+}
+
+// A point of the ray and the parameter of the curve's point nearest to it.
+typedef struct {
+    floatv s, x;
+} curve_sight;
+
+INLINE curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
+    const curve_point point = curve_point_at(path, s);
+    floatv distance2;
+    const curve_sight sight = {s, nearest_on_curve(path, &point, &distance2)};
+    return sight;
+}
+
+curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is_b) {
+    const curve_sight sight = {select(a.s, b.s, is_b), select(a.x, b.x, is_b)};
+    return sight;
+}
+
+// Whether the nearest point jumps between an end of a panel and the outermost node, unseen by all others: with a local
+// intensity the field jumps there.
+INLINE intv curve_is_broken(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv first,
+                            const floatv last) {
+    const curve_path *const path = &peaks->path;
+    if (!path->spline_count)
+        return from > to;
+    const floatv inside = 1e-4f * (to - from);
+    const floatv begin = curve_seen_from(path, from + inside).x - curve_seen_from(path, first).x;
+    const floatv end = curve_seen_from(path, to - inside).x - curve_seen_from(path, last).x;
+    return max(fabs(begin), fabs(end)) > 0.1f;
+}
+
+// Where to cut a panel that is not resolved: where the nearest point jumps, or else in the middle. Halving closes in on
+// the fastest change; then both sides, continued as they are, meet in the jump.
+INLINE floatv curve_split(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv middle) {
+    const curve_path *const path = &peaks->path;
+    const floatv inside = 1e-4f * (to - from);
+    curve_sight left = curve_seen_from(path, from + inside), right = curve_seen_from(path, to - inside);
+    const floatv change = fabs(right.x - left.x);
+    floatv s = 0.5f * (left.s + right.s);
+    for (int step = 0; step < 10; ++step) {
+        const curve_sight sight = curve_seen_from(path, s);
+        const intv is_left = fabs(sight.x - left.x) < fabs(sight.x - right.x);
+        left = select_sight(left, sight, is_left);
+        right = select_sight(sight, right, is_left);
+        s = 0.5f * (left.s + right.s);
+        if (step > 6)
+            s = clamp(equidistant(peaks, left.x, right.x), left.s, right.s);
+    }
+    const intv jumps = fabs(right.x - left.x) > max(0.25f * change, 1e-3f);
+    const intv is_inside = (s > from + inside) & (s < to - inside);
+    return select(middle, s, jumps & is_inside);
 }
 
 // L(s) - C(1/2 + x) in the curve's frame, doubled.

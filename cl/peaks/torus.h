@@ -61,6 +61,17 @@ INLINE intv torus_closed(const torus_peaks *const peaks, const Decay decay, cons
     return from > to;
 }
 
+// Along a ray the field jumps nowhere.
+INLINE intv torus_is_broken(const torus_peaks *const peaks, const floatv from, const floatv to, const floatv first,
+                            const floatv last) {
+    return from > to;
+}
+
+// Where to cut a panel that is not resolved.
+INLINE floatv torus_split(const torus_peaks *const peaks, const floatv from, const floatv to, const floatv middle) {
+    return middle;
+}
+
 // The field beside a point of the ray. rho^2 - R^2 is a polynomial there that loses no digits at the ring. Lengths are
 // doubled.
 typedef struct {
