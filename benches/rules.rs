@@ -71,7 +71,8 @@ fn main() {
             for threshold in THRESHOLDS {
                 let rule = Rule {
                     nodes: nodes_of_panel,
-                    threshold,
+                    torus_threshold: threshold,
+                    curve_threshold: threshold,
                 };
                 let errors = errors(rule, &scenes);
                 let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize];

@@ -1,33 +1,30 @@
-// Exponential and logarithm in float32: OpenCL's own are exact to the last digit, and slower than a whole panel of
-// nodes allows on a CPU.
+// Powers of two and logarithms in float32: OpenCL's own are exact to the last digit, and slower than a whole panel of
+// nodes may be on a CPU.
 #pragma once
 #include "lanes.h"
 
-// e^x for |x| below 80: 2^n times a polynomial of the rest; within 2e-7.
-floatv exponential(const floatv x) {
-    const floatv shifted = fma(x, splat(1.44269504f), splat(12582912.0f)); // 1.5 2^23: what follows the point is lost
-    const floatv n = shifted - 12582912.0f;
-    const floatv f = fma(n, splat(-1.42860677e-6f), fma(n, splat(-0.693145752f), x)); // ln 2 in two parts
-    floatv r = splat(1.3978917e-3f);
-    r = fma(r, f, splat(8.3752662e-3f));
-    r = fma(r, f, splat(4.1665524e-2f));
-    r = fma(r, f, splat(1.6666508e-1f));
-    r = fma(r, f, splat(5.0000000e-1f));
-    r = fma(r, f, splat(1.0f));
-    r = fma(r, f, splat(1.0f));
+// 2^x for |x| below 120: a power of two times a minimax polynomial of the rest; within 2e-7.
+floatv power_of_two(const floatv x) {
+    const floatv shifted = x + 12582912.0f; // 1.5 2^23: what follows the point is rounded away
+    const floatv f = x - (shifted - 12582912.0f);
+    const floatv f2 = f * f;
+    const floatv low = fma(splat(6.931469671e-1f), f, splat(1.0f));
+    const floatv mid = fma(splat(5.550713275e-2f), f, splat(2.402211972e-1f));
+    const floatv high = fma(splat(1.327647203e-3f), f, splat(9.675541480e-3f));
+    const floatv r = fma(fma(high, f2, mid), f2, low);
     return as_floatv(as_intv(r) + (as_intv(shifted) << 23));
 }
 
-// ln x for normal x > 0: exponent and mantissa in [sqrt(1/2), sqrt(2)]; within 2e-7 of max(1, |ln x|).
-floatv logarithm(const floatv x) {
+// The binary logarithm of a normal x > 0: exponent, and a minimax polynomial of the mantissa in [sqrt(1/2), sqrt(2)];
+// within 2e-7 of max(1, |log x|).
+floatv binary_logarithm(const floatv x) {
     const intv bits = as_intv(x) - 0x3f3504f3;
-    const floatv n = to_floatv(bits >> 23);
     const floatv m = as_floatv((bits & 0x007fffff) + 0x3f3504f3) - 1.0f;
-    // Degree 8 in threes, for short chains of dependent operations.
-    const floatv m2 = m * m, m3 = m2 * m;
-    const floatv a = fma(fma(splat(2.0000714765e-1f), m, splat(-2.4999993993e-1f)), m, splat(3.3333331174e-1f));
-    const floatv b = fma(fma(splat(-1.2420140846e-1f), m, splat(1.4249322787e-1f)), m, splat(-1.6668057665e-1f));
-    const floatv c = fma(fma(splat(7.0376836292e-2f), m, splat(-1.1514610310e-1f)), m, splat(1.1676998740e-1f));
-    const floatv r = fma(fma(c, m3, b), m3, a);
-    return fma(n, splat(0.693147181f), fma(m2, fma(r, m, splat(-0.5f)), m));
+    const floatv m2 = m * m;
+    const floatv a = fma(splat(-7.213571490e-1f), m, splat(1.442694772e+0f));
+    const floatv b = fma(splat(-3.600872143e-1f), m, splat(4.809394451e-1f));
+    const floatv c = fma(splat(-2.500690532e-1f), m, splat(2.867074486e-1f));
+    const floatv d = fma(splat(-1.457445055e-1f), m, splat(2.368904340e-1f));
+    const floatv r = fma(fma(fma(d, m2, c), m2, b), m2, a);
+    return fma(r, m, to_floatv(bits >> 23));
 }

@@ -30,7 +30,8 @@ __kernel void trace(const View view, const Launch launch, __global const Node *c
     if (begin >= launch.count)
         return;
     const Sources sources = {spheres, cylinders, tori, curves, spline_pieces};
-    const Quadrature quadrature = {nodes, launch.node_count, decay_of(&view), view.threshold};
+    const Quadrature quadrature = {nodes, launch.node_count, decay_of(&view), view.torus_threshold,
+                                   view.curve_threshold};
     const uintv index = min(begin + LANE_NUMBERS, (uintv)(launch.count - 1));
     const Ray ray = listed_ray(rays, launch.first + index, view.softening2);
     const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch);

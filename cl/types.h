@@ -11,14 +11,13 @@ typedef struct {
     float4 column_step; // from a pixel to its right neighbour
     float4 row_step;    // from a pixel to the one below
     float4 first_pixel_rest, column_step_rest, row_step_rest;
-    float ray_length;     // |E - S|
-    float softening2;     // squared softening radius
-    float decay_strength; // alpha / beta; 1 without decay
-    float decay_beta;     // 0 without decay
-    float decay_per_beta; // 1 / beta; 0 without decay
-    float threshold;      // method exact: how large unresolved coefficients may be, of the integral
-    uint width;           // pixels in a row
-    uint padding;
+    float ray_length;                       // |E - S|
+    float softening2;                       // squared softening radius
+    float decay_strength;                   // alpha / beta; 1 without decay
+    float decay_beta;                       // 0 without decay
+    float decay_per_beta;                   // 1 / beta; 0 without decay
+    float torus_threshold, curve_threshold; // method exact: how large unresolved coefficients may be, of the integral
+    uint width;                             // pixels in a row
 } View;
 
 // One launch: which pixels (or rays), and which part of each list of sources.

@@ -18,6 +18,8 @@ floatv artanh_series(const floatv m2) {
     return series;
 }
 
+#define HALF_LN_2 0.346573590f
+
 INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2, const Decay decay, const floatv from,
                           const floatv to) {
     const floatv least = floored(distance2->least, floor2);
@@ -45,7 +47,7 @@ INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2,
     const floatv turn = rate * d;
     const floatv above = whole * whole * select(splat(1.0f), f0f1 - g, is_between);
     const floatv below = 2.0f * select(f0f1 + g, least * turn * turn, is_between);
-    const floatv artanh = 0.5f * logarithm(above * inverse(max(below, 1e-36f)));
+    const floatv artanh = HALF_LN_2 * binary_logarithm(above * inverse(max(below, 1e-36f)));
     const floatv mean = 0.5f * (n0 + n1), per_a = per_root * per_root;
     floatv integral = fma(ratio, fma(-b, per_a, mean), b * per_a * per_root * artanh);
     const floatv m2 = a * ratio * ratio;

@@ -13,6 +13,7 @@
 #define MOST_CUTS 64
 #define SHORTEST_PANEL 1e-6f
 #define BEYOND_NODES 0.03f
+#define LN_2 0.693147181f
 #endif
 
 INLINE PanelSum JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay, const floatv from,
@@ -28,7 +29,7 @@ INLINE PanelSum JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, c
     floatv sum = splat(0.0f), even = splat(0.0f), odd = splat(0.0f);
     floatv first = base, last = base;
     for (int k = 0; k < GAUSS_PAIRS; ++k) {
-        const floatv grown = exponential(panel.half_length * node[k]), shrunk = inverse(grown);
+        const floatv grown = power_of_two(panel.half_length * node[k]), shrunk = inverse(grown);
         const floatv right_up = panel.rising * grown, right_down = panel.falling * shrunk;
         const floatv left_up = panel.rising * shrunk, left_down = panel.falling * grown;
         const floatv right_s = parameter_of(&panel, panel.middle + (right_up - right_down));
@@ -42,7 +43,7 @@ INLINE PanelSum JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, c
         even = fma(both, splat(null_even[k]), even);
         odd = fma(right - left, splat(null_odd[k]), odd);
     }
-    const floatv scale = decay.strength * panel.half_length;
+    const floatv scale = LN_2 * decay.strength * panel.half_length;
     const floatv middle = base + parameter_of(&panel, panel.middle + (panel.rising - panel.falling));
     const PanelSum result = {scale * sum, scale * scale * fma(even, even, odd * odd), clamp(middle, from, to),
                              JOIN(FIELD, _is_broken)(peaks, from, to, first, last)};
@@ -71,7 +72,7 @@ INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sou
             const PanelSum panel = JOIN(panel_of_, FIELD)(&peaks, decay, from, end);
             nodes += 2 * GAUSS_PAIRS;
             value = select(panel.integral, value, is_closed);
-            const floatv allowed = quadrature->threshold * (integral + value);
+            const floatv allowed = quadrature->JOIN(FIELD, _threshold) * (integral + value);
             const intv is_unseen = panel.is_broken & (BEYOND_NODES * value > allowed);
             const intv is_rough = (panel.unresolved2 > allowed * allowed) | is_unseen;
             if (cuts < MOST_CUTS && open < MOST_ENDS && any_lane(is_rough & !is_closed)) {

@@ -18,7 +18,7 @@ typedef struct {
     floatv bend, stretch;   // s - base = x / (stretch - bend x), x the advance of v
     floatv middle;          // of the peak: v0 less v(base)
     floatv rising, falling; // w/2 e^u and w/2 e^-u in the panel's middle
-    floatv half_length;     // half the panel's length in u
+    floatv half_length;     // half the panel's length in u / ln 2
 } Panel;
 
 // What the nodes of a panel make of it.
@@ -66,12 +66,14 @@ INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from,
     panel.middle = clamp(panel.middle, begin - length, end + length);
     width = clamp(width, 1e-8f * length, length);
     const floatv per_width = inverse(width);
-    const floatv at_begin = exp_asinh((begin - panel.middle) * per_width);
+    // e^u at the end, e^-u at the beginning: none but large numbers where the peak lies between.
     const floatv at_end = exp_asinh((end - panel.middle) * per_width);
-    panel.half_length = 0.5f * logarithm(at_end * inverse(at_begin));
-    const floatv at_middle = 0.5f * twice_sqrt(at_begin * at_end);
-    panel.rising = 0.5f * width * at_middle;
-    panel.falling = 0.5f * width * inverse(at_middle);
+    const floatv at_begin = exp_asinh((panel.middle - begin) * per_width);
+    const floatv growth = at_end * at_begin;
+    const floatv quarter_width = 0.25f * width * twice_inverse_sqrt_(growth);
+    panel.half_length = 0.5f * binary_logarithm(growth);
+    panel.rising = quarter_width * at_end;
+    panel.falling = quarter_width * at_begin;
     return panel;
 }
 

@@ -7,5 +7,5 @@ typedef struct {
     __global const Node *nodes; // of the Simpson rule
     uint node_count;
     Decay decay;
-    float threshold; // exact: how large unresolved coefficients may be, of the integral
+    float torus_threshold, curve_threshold; // exact: how large unresolved coefficients may be, of the integral
 } Quadrature;

@@ -87,27 +87,30 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     const torus_path *const path = &peaks->path;
     *peak = nearer_peak(peaks->first, peaks->second, from, to);
     *base = clamp(peak->re, from, to);
-    __global const Torus *const torus = peaks->torus;
-    const fine3v from_center = fine_between(peaks->ray, *base, torus->center, torus->center_rest);
-    const finev height = fine_dot3(from_center, fine3(torus->axis, torus->axis_rest));
-    const fine radius = (fine)torus->major_radius + (fine)torus->major_radius_rest;
     torus_near near;
-    near.height = 2.0f * from_finev(height);
-    near.excess = 4.0f * from_finev(fma(-height, height, fine_dot3(from_center, from_center)) - radius * radius);
     near.across = 2.0f * fma(path->rho2.slope, *base, path->rho2.offset);
     near.across_slope = 2.0f * path->rho2.slope;
     near.rho2_least = 4.0f * path->rho2.least;
     near.major_radius = path->major_radius;
     near.excess_slope = 2.0f * near.across * near.across_slope;
+    near.height = fma(path->height_slope, *base, path->height);
     near.height_slope = path->height_slope;
-    const floatv rho = 0.5f * twice_sqrt(fma(near.across, near.across, near.rho2_least));
-    const floatv from_ring = near.excess * inverse(rho + near.major_radius);
-    const floatv distance2 = fma(from_ring, from_ring, near.height * near.height);
     near.softening2 = path->softening2;
+    const floatv rho2 = fma(near.across, near.across, near.rho2_least);
+    const float radius2 = path->major_radius * path->major_radius;
+    near.excess = rho2 - radius2;
 
-    // Next to the ring the root of the quadratic has too few digits: there the ring is straight.
-    const intv is_close = distance2 < 1e-4f * near.major_radius * near.major_radius;
+    // Next to the ring more digits are needed, and there the ring is straight.
+    const intv is_close = max(fabs(near.excess), near.height * near.height) < 0.02f * radius2;
     if (any_lane(is_close)) {
+        __global const Torus *const torus = peaks->torus;
+        const fine3v from_center = fine_between(peaks->ray, *base, torus->center, torus->center_rest);
+        const finev height = fine_dot3(from_center, fine3(torus->axis, torus->axis_rest));
+        const fine radius = (fine)torus->major_radius + (fine)torus->major_radius_rest;
+        near.height = 2.0f * from_finev(height);
+        near.excess = 4.0f * from_finev(fma(-height, height, fine_dot3(from_center, from_center)) - radius * radius);
+        const floatv rho = 0.5f * twice_sqrt(rho2);
+        const floatv from_ring = near.excess * inverse(rho + near.major_radius);
         const floatv from_ring_slope = 0.5f * near.excess_slope * inverse(rho);
         const floatv slope2 = fma(from_ring_slope, from_ring_slope, near.height_slope * near.height_slope);
         const floatv per_slope2 = inverse(max(slope2, 1e-30f));

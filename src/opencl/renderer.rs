@@ -196,7 +196,8 @@ impl OpenClRenderer {
     ) -> Result<Job> {
         let rule = self.options.rule.unwrap_or(Rule::of(&scene.integration));
         let view = layout::View {
-            threshold: rule.threshold,
+            torus_threshold: rule.torus_threshold,
+            curve_threshold: rule.curve_threshold,
             ..view
         };
         let task = Task {

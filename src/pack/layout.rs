@@ -48,9 +48,9 @@ device_structs! {
         decay_strength: f32 = 104,
         decay_beta: f32 = 108,
         decay_per_beta: f32 = 112,
-        threshold: f32 = 116,
-        width: u32 = 120,
-        padding: u32 = 124,
+        torus_threshold: f32 = 116,
+        curve_threshold: f32 = 120,
+        width: u32 = 124,
     }
     /// One launch.
     Launch [64] {
