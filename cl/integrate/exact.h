@@ -26,18 +26,23 @@ INLINE PanelSum JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, c
     floatv base;
     const JOIN(FIELD, _near) near = JOIN(FIELD, _approach)(peaks, from, to, &peak, &base);
     const Panel panel = mapped_panel(decay, peak, from, to, base);
-    floatv sum = splat(0.0f), even = splat(0.0f), odd = splat(0.0f);
-    floatv first = base, last = base;
+    // All nodes first, then the field at all of them: chains of operations that do not wait for each other.
+    floatv right_s[GAUSS_PAIRS], left_s[GAUSS_PAIRS], right_v[GAUSS_PAIRS], left_v[GAUSS_PAIRS];
+#pragma unroll
     for (int k = 0; k < GAUSS_PAIRS; ++k) {
         const floatv grown = power_of_two(panel.half_length * node[k]), shrunk = inverse(grown);
         const floatv right_up = panel.rising * grown, right_down = panel.falling * shrunk;
         const floatv left_up = panel.rising * shrunk, left_down = panel.falling * grown;
-        const floatv right_s = parameter_of(&panel, panel.middle + (right_up - right_down));
-        const floatv left_s = parameter_of(&panel, panel.middle + (left_up - left_down));
-        if (k == 0)
-            first += left_s, last += right_s;
-        const floatv right = (right_up + right_down) * JOIN(FIELD, _near_field)(&near, right_s);
-        const floatv left = (left_up + left_down) * JOIN(FIELD, _near_field)(&near, left_s);
+        right_s[k] = parameter_of(&panel, panel.middle + (right_up - right_down));
+        left_s[k] = parameter_of(&panel, panel.middle + (left_up - left_down));
+        right_v[k] = right_up + right_down;
+        left_v[k] = left_up + left_down;
+    }
+    floatv sum = splat(0.0f), even = splat(0.0f), odd = splat(0.0f);
+#pragma unroll
+    for (int k = 0; k < GAUSS_PAIRS; ++k) {
+        const floatv right = right_v[k] * JOIN(FIELD, _near_field)(&near, right_s[k]);
+        const floatv left = left_v[k] * JOIN(FIELD, _near_field)(&near, left_s[k]);
         const floatv both = right + left;
         sum = fma(both, splat(weight[k]), sum);
         even = fma(both, splat(null_even[k]), even);
@@ -46,7 +51,7 @@ INLINE PanelSum JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, c
     const floatv scale = LN_2 * decay.strength * panel.half_length;
     const floatv middle = base + parameter_of(&panel, panel.middle + (panel.rising - panel.falling));
     const PanelSum result = {scale * sum, scale * scale * fma(even, even, odd * odd), clamp(middle, from, to),
-                             JOIN(FIELD, _is_broken)(peaks, from, to, first, last)};
+                             JOIN(FIELD, _is_broken)(peaks, from, to, base + left_s[0], base + right_s[0])};
     return result;
 }
 

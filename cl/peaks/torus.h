@@ -73,13 +73,13 @@ INLINE floatv torus_split(const torus_peaks *const peaks, const floatv from, con
 }
 
 // The field beside a point of the ray. rho^2 - R^2 is a polynomial there that loses no digits at the ring. Lengths are
-// doubled.
+// doubled, but for those of rho^2, whose root doubles.
 typedef struct {
     floatv across, across_slope, rho2_least; // rho^2 = (across + slope x)^2 + least
-    floatv excess, excess_slope;             // rho^2 - R^2 and its derivative
+    floatv excess, excess_slope;             // rho^2 - R^2 and its derivative, doubled
     floatv height, height_slope;
     float major_radius;
-    floatv softening2, floor2;
+    floatv softening2;
 } torus_near;
 
 INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
@@ -88,17 +88,17 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     *peak = nearer_peak(peaks->first, peaks->second, from, to);
     *base = clamp(peak->re, from, to);
     torus_near near;
-    near.across = 2.0f * fma(path->rho2.slope, *base, path->rho2.offset);
-    near.across_slope = 2.0f * path->rho2.slope;
-    near.rho2_least = 4.0f * path->rho2.least;
+    near.across = fma(path->rho2.slope, *base, path->rho2.offset);
+    near.across_slope = path->rho2.slope;
+    near.rho2_least = path->rho2.least;
     near.major_radius = path->major_radius;
-    near.excess_slope = 2.0f * near.across * near.across_slope;
+    near.excess_slope = 8.0f * near.across * near.across_slope;
     near.height = fma(path->height_slope, *base, path->height);
     near.height_slope = path->height_slope;
     near.softening2 = path->softening2;
     const floatv rho2 = fma(near.across, near.across, near.rho2_least);
     const float radius2 = path->major_radius * path->major_radius;
-    near.excess = rho2 - radius2;
+    near.excess = fma(rho2, splat(4.0f), splat(-radius2));
 
     // Next to the ring more digits are needed, and there the ring is straight.
     const intv is_close = max(fabs(near.excess), near.height * near.height) < 0.02f * radius2;
@@ -109,7 +109,7 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
         const fine radius = (fine)torus->major_radius + (fine)torus->major_radius_rest;
         near.height = 2.0f * from_finev(height);
         near.excess = 4.0f * from_finev(fma(-height, height, fine_dot3(from_center, from_center)) - radius * radius);
-        const floatv rho = 0.5f * twice_sqrt(rho2);
+        const floatv rho = twice_sqrt(rho2);
         const floatv from_ring = near.excess * inverse(rho + near.major_radius);
         const floatv from_ring_slope = 0.5f * near.excess_slope * inverse(rho);
         const floatv slope2 = fma(from_ring_slope, from_ring_slope, near.height_slope * near.height_slope);
@@ -122,18 +122,17 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
         peak->re = select(peak->re, *base + ahead, is_close);
         peak->im = select(peak->im, 0.5f * twice_sqrt(lifted * per_slope2), is_close);
     }
-    near.floor2 = 0.5f * path->floor2;
     return near;
 }
 
-// The field at s = base + x.
+// The field at s = base + x: 1 / sqrt((rho - R)^2 + z^2) with rho - R = (rho^2 - R^2) / (rho + R).
 INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv across = fma(near->across_slope, x, near->across);
-    const floatv rho = 0.5f * twice_sqrt(fma(across, across, near->rho2_least));
-    const floatv curvature = near->across_slope * near->across_slope;
+    const floatv sum = twice_sqrt_less(fma(across, across, near->rho2_least), splat(-near->major_radius));
+    const floatv curvature = 4.0f * near->across_slope * near->across_slope;
     const floatv excess = fma(fma(curvature, x, near->excess_slope), x, near->excess);
-    const floatv from_ring = excess * inverse(rho + near->major_radius);
     const floatv height = fma(near->height_slope, x, near->height);
-    const floatv distance2 = fma(from_ring, from_ring, fma(height, height, near->softening2));
-    return twice_inverse_sqrt(max(distance2, near->floor2));
+    const floatv aside2 = fma(height, height, near->softening2);
+    const floatv scaled2 = fma(excess, excess, aside2 * (sum * sum));
+    return sum * twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f));
 }
