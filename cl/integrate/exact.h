@@ -16,42 +16,56 @@
 #define LN_2 0.693147181f
 #endif
 
-INLINE PanelSum JOIN(panel_of_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay, const floatv from,
-                                       const floatv to) {
+typedef struct {
+    JOIN(FIELD, _near) near;
+    Panel map;
+    floatv base, from, to;
+} JOIN(panel_of_, FIELD);
+
+INLINE JOIN(panel_of_, FIELD)
+    JOIN(open_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay, const floatv from, const floatv to) {
+    JOIN(panel_of_, FIELD) panel;
+    Peak peak;
+    panel.near = JOIN(FIELD, _approach)(peaks, from, to, &peak, &panel.base);
+    panel.map = mapped_panel(decay, peak, from, to, panel.base);
+    panel.from = from, panel.to = to;
+    return panel;
+}
+
+INLINE PanelSum JOIN(sum_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay,
+                                  const JOIN(panel_of_, FIELD) *const panel) {
     const float node[GAUSS_PAIRS] = GAUSS_NODES;
     const float weight[GAUSS_PAIRS] = GAUSS_WEIGHTS;
     const float null_even[GAUSS_PAIRS] = GAUSS_NULL_EVEN;
     const float null_odd[GAUSS_PAIRS] = GAUSS_NULL_ODD;
-    Peak peak;
-    floatv base;
-    const JOIN(FIELD, _near) near = JOIN(FIELD, _approach)(peaks, from, to, &peak, &base);
-    const Panel panel = mapped_panel(decay, peak, from, to, base);
+    const Panel *const map = &panel->map;
     // All nodes first, then the field at all of them: chains of operations that do not wait for each other.
     floatv right_s[GAUSS_PAIRS], left_s[GAUSS_PAIRS], right_v[GAUSS_PAIRS], left_v[GAUSS_PAIRS];
 #pragma unroll
     for (int k = 0; k < GAUSS_PAIRS; ++k) {
-        const floatv grown = power_of_two(panel.half_length * node[k]), shrunk = inverse(grown);
-        const floatv right_up = panel.rising * grown, right_down = panel.falling * shrunk;
-        const floatv left_up = panel.rising * shrunk, left_down = panel.falling * grown;
-        right_s[k] = parameter_of(&panel, panel.middle + (right_up - right_down));
-        left_s[k] = parameter_of(&panel, panel.middle + (left_up - left_down));
+        const floatv grown = power_of_two(map->half_length * node[k]), shrunk = inverse(grown);
+        const floatv right_up = map->rising * grown, right_down = map->falling * shrunk;
+        const floatv left_up = map->rising * shrunk, left_down = map->falling * grown;
+        right_s[k] = parameter_of(map, map->middle + (right_up - right_down));
+        left_s[k] = parameter_of(map, map->middle + (left_up - left_down));
         right_v[k] = right_up + right_down;
         left_v[k] = left_up + left_down;
     }
     floatv sum = splat(0.0f), even = splat(0.0f), odd = splat(0.0f);
 #pragma unroll
     for (int k = 0; k < GAUSS_PAIRS; ++k) {
-        const floatv right = right_v[k] * JOIN(FIELD, _near_field)(&near, right_s[k]);
-        const floatv left = left_v[k] * JOIN(FIELD, _near_field)(&near, left_s[k]);
+        const floatv right = right_v[k] * JOIN(FIELD, _near_field)(&panel->near, right_s[k]);
+        const floatv left = left_v[k] * JOIN(FIELD, _near_field)(&panel->near, left_s[k]);
         const floatv both = right + left;
         sum = fma(both, splat(weight[k]), sum);
         even = fma(both, splat(null_even[k]), even);
         odd = fma(right - left, splat(null_odd[k]), odd);
     }
-    const floatv scale = LN_2 * decay.strength * panel.half_length;
-    const floatv middle = base + parameter_of(&panel, panel.middle + (panel.rising - panel.falling));
-    const PanelSum result = {scale * sum, scale * scale * fma(even, even, odd * odd), clamp(middle, from, to),
-                             JOIN(FIELD, _is_broken)(peaks, from, to, base + left_s[0], base + right_s[0])};
+    const floatv scale = LN_2 * decay.strength * map->half_length;
+    const floatv middle = panel->base + parameter_of(map, map->middle + (map->rising - map->falling));
+    const PanelSum result = {
+        scale * sum, scale * scale * fma(even, even, odd * odd), clamp(middle, panel->from, panel->to),
+        JOIN(FIELD, _is_broken)(peaks, panel->from, panel->to, panel->base + left_s[0], panel->base + right_s[0])};
     return result;
 }
 
@@ -63,6 +77,20 @@ INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sou
     uint open = JOIN(FIELD, _cuts)(&peaks, ends);
     uint cuts = 0, nodes = 0;
     floatv integral = splat(0.0f), from = splat(0.0f);
+#ifdef TORI
+    if (open == 2) {
+        const floatv mid = ends[1];
+        const JOIN(panel_of_, FIELD) l = JOIN(open_, FIELD)(&peaks, decay, from, max(mid, SHORTEST_PANEL));
+        const JOIN(panel_of_, FIELD) r =
+            JOIN(open_, FIELD)(&peaks, decay, min(mid, 1.0f - SHORTEST_PANEL), splat(1.0f));
+        const PanelSum a = JOIN(sum_, FIELD)(&peaks, decay, &l);
+        const PanelSum b = JOIN(sum_, FIELD)(&peaks, decay, &r);
+        const floatv total = a.integral + b.integral;
+        const floatv allowed = quadrature->JOIN(FIELD, _threshold) * total;
+        if (!any_lane(max(a.unresolved2, b.unresolved2) > allowed * allowed))
+            return total;
+    }
+#endif
     while (open > 0) {
         const floatv to = ends[open - 1];
         const intv is_empty = to - from < SHORTEST_PANEL;
@@ -74,7 +102,8 @@ INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sou
         floatv value;
         const intv is_closed = JOIN(FIELD, _closed)(&peaks, decay, from, end, &value) | is_empty;
         if (any_lane(!is_closed)) {
-            const PanelSum panel = JOIN(panel_of_, FIELD)(&peaks, decay, from, end);
+            const JOIN(panel_of_, FIELD) opened = JOIN(open_, FIELD)(&peaks, decay, from, end);
+            const PanelSum panel = JOIN(sum_, FIELD)(&peaks, decay, &opened);
             nodes += 2 * GAUSS_PAIRS;
             value = select(panel.integral, value, is_closed);
             const floatv allowed = quadrature->JOIN(FIELD, _threshold) * (integral + value);

@@ -20,29 +20,30 @@ INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const 
     peaks.ray = ray;
     peaks.torus = torus;
     const float radius = torus->major_radius;
+    const floatv per_length = inverse(ray->length);
+    const float3v direction = scale3(ray->span, per_length);
     const float3v from_center = subtract3(ray->origin, uniform3(torus->center));
-    const floatv inverse_length = 0.5f * twice_inverse_sqrt_(dot3(ray->span, ray->span));
-    const float3v direction = scale3(ray->span, inverse_length);
     const floatv to_nearest = -dot3(from_center, direction); // the point next to the centre, a length along the ray
     const float3v nearest = fma3(direction, to_nearest, from_center);
-    const float3v axis = uniform3(torus->axis);
-    const floatv height = dot3(nearest, axis), climb = dot3(direction, axis);
-    const float3v across = cross3(direction, axis);
+    const floatv height = dot3(nearest, uniform3(torus->axis));
+    const floatv climb = 0.5f * peaks.path.height_slope * per_length;
+    const floatv across = radius * peaks.path.rho2.slope * per_length;
 
     // s |E - S| = to_nearest + i R climb +- sqrt(re + i im)
-    const floatv re = fma(splat(radius * radius), dot3(across, across), -dot3(nearest, nearest));
+    const floatv re = fma(across, across, -dot3(nearest, nearest));
     const floatv im = 2.0f * radius * height;
     const floatv size = 0.5f * twice_sqrt(max(fma(re, re, im * im), 1e-36f));
     const floatv larger = 0.5f * twice_sqrt(max(0.5f * (size + fabs(re)), 1e-18f));
     const floatv smaller = 0.5f * im * inverse(larger);
-    const floatv root_re = select(fabs(smaller), larger, re > 0.0f);
+    const floatv root_re = select(fabs(smaller), larger, re > 0.0f) * per_length;
     const floatv root_im = select(copysign(larger, im), smaller, re > 0.0f);
-    const floatv blur2 = ray->softening2 + 0.5f * ray->floor2;
-    const floatv first = fma(splat(radius), climb, -root_im), second = fma(splat(radius), climb, root_im);
-    peaks.first.re = (to_nearest - root_re) * inverse_length;
-    peaks.second.re = (to_nearest + root_re) * inverse_length;
-    peaks.first.im = 0.5f * twice_sqrt(fma(first, first, blur2)) * inverse_length;
-    peaks.second.im = 0.5f * twice_sqrt(fma(second, second, blur2)) * inverse_length;
+    const floatv middle = to_nearest * per_length;
+    const floatv lift = radius * climb;
+    const floatv blur = 0.5f * twice_sqrt(ray->softening2 + 0.5f * ray->floor2);
+    peaks.first.re = middle - root_re;
+    peaks.second.re = middle + root_re;
+    peaks.first.im = max(fabs(lift - root_im), blur) * per_length;
+    peaks.second.im = max(fabs(lift + root_im), blur) * per_length;
     return peaks;
 }
 
@@ -100,7 +101,7 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     const float radius2 = path->major_radius * path->major_radius;
     near.excess = fma(rho2, splat(4.0f), splat(-radius2));
 
-    // Next to the ring more digits are needed, and there the ring is straight.
+    // Close to the ring more digits are needed; next to it the ring is straight.
     const intv is_close = max(fabs(near.excess), near.height * near.height) < 0.02f * radius2;
     if (any_lane(is_close)) {
         __global const Torus *const torus = peaks->torus;
@@ -118,9 +119,10 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
         const floatv aside = fma(from_ring, near.height_slope, -near.height * from_ring_slope);
         const floatv least = fma(aside * per_slope2, aside, path->softening2);
         const floatv lifted = floored(least, path->floor2);
-        near.softening2 += select(splat(0.0f), lifted - least, is_close);
-        peak->re = select(peak->re, *base + ahead, is_close);
-        peak->im = select(peak->im, 0.5f * twice_sqrt(lifted * per_slope2), is_close);
+        const intv is_straight = fma(from_ring, from_ring, near.height * near.height) < 1e-4f * radius2;
+        near.softening2 += select(splat(0.0f), lifted - least, is_straight);
+        peak->re = select(peak->re, *base + ahead, is_straight);
+        peak->im = select(peak->im, 0.5f * twice_sqrt(lifted * per_slope2), is_straight);
     }
     return near;
 }

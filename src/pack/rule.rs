@@ -20,7 +20,7 @@ const RULES: [(f64, Rule); 5] = [
     (1e-2, rule(6, 1.0, 5e-3)),
     (1e-3, rule(8, 1.0, 1e-3)),
     (1e-4, rule(10, 1e-3, 1e-4)),
-    (0.0, rule(10, 1e-4, 1e-5)),
+    (0.0, rule(10, 2e-5, 1e-5)),
 ];
 
 const fn rule(nodes: u32, torus_threshold: f32, curve_threshold: f32) -> Rule {
