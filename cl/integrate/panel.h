@@ -43,7 +43,7 @@ floatv exp_asinh(const floatv x) {
     return select(sum, inverse(sum), x < 0.0f);
 }
 
-// from < to, base between them.
+// from < to, base between them; the peak is seen from the base, so that next to a core it keeps its digits.
 INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from, const floatv to, const floatv base) {
     Panel panel;
     panel.base = base;
@@ -51,12 +51,12 @@ INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from,
     const floatv begin = advance(decay, base, near_base, from, nearness(decay, from));
     const floatv end = advance(decay, base, near_base, to, nearness(decay, to));
     floatv width = peak.im;
-    panel.middle = peak.re - base;
+    panel.middle = peak.re;
     panel.stretch = splat(1.0f), panel.bend = splat(0.0f);
     if (decay.beta > 0.0f) {
         panel.bend = near_base * decay.per_beta;
         panel.stretch = near_base * panel.bend;
-        const floatv from_pole = peak.re + decay.beta;
+        const floatv from_pole = base + peak.re + decay.beta;
         const floatv per_size = inverse(fma(from_pole, from_pole, peak.im * peak.im));
         panel.middle = near_base * fma(peak.im, peak.im, from_pole * panel.middle) * per_size;
         width = decay.beta * peak.im * per_size;

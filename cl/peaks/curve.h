@@ -294,7 +294,7 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     const floatv per_curvature = inverse(curvature);
     const floatv softened = distance2 + path->softening2;
     const floatv lowest = max(fma(-slope * per_curvature, slope, softened), 1e-3f * softened);
-    peak->re = fma(-slope, per_curvature, *base);
+    peak->re = -slope * per_curvature;
     peak->im = 0.5f * twice_sqrt(fma(lowest, per_curvature, 0.5f * path->floor2 * per_span2));
 
     curve_near near = {*path, x};

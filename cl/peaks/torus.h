@@ -83,47 +83,84 @@ typedef struct {
     floatv softening2;
 } torus_near;
 
-INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
-                                 floatv *const base) {
+INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv base) {
     const torus_path *const path = &peaks->path;
-    *peak = nearer_peak(peaks->first, peaks->second, from, to);
-    *base = clamp(peak->re, from, to);
+    const float radius2 = path->major_radius * path->major_radius;
     torus_near near;
-    near.across = fma(path->rho2.slope, *base, path->rho2.offset);
+    near.across = fma(path->rho2.slope, base, path->rho2.offset);
     near.across_slope = path->rho2.slope;
     near.rho2_least = path->rho2.least;
     near.major_radius = path->major_radius;
+    near.excess = fma(fma(near.across, near.across, near.rho2_least), splat(4.0f), splat(-radius2));
     near.excess_slope = 8.0f * near.across * near.across_slope;
-    near.height = fma(path->height_slope, *base, path->height);
+    near.height = fma(path->height_slope, base, path->height);
     near.height_slope = path->height_slope;
     near.softening2 = path->softening2;
-    const floatv rho2 = fma(near.across, near.across, near.rho2_least);
-    const float radius2 = path->major_radius * path->major_radius;
-    near.excess = fma(rho2, splat(4.0f), splat(-radius2));
+    return near;
+}
 
-    // Close to the ring more digits are needed; next to it the ring is straight.
+// The two that are small differences close to the ring.
+INLINE void torus_near_refine(const torus_peaks *const peaks, const floatv base, torus_near *const near) {
+    __global const Torus *const torus = peaks->torus;
+    const fine3v from_center = fine_between(peaks->ray, base, torus->center, torus->center_rest);
+    const finev height = fine_dot3(from_center, fine3(torus->axis, torus->axis_rest));
+    const fine radius = (fine)torus->major_radius + (fine)torus->major_radius_rest;
+    near->height = 2.0f * from_finev(height);
+    near->excess = 4.0f * from_finev(fma(-height, height, fine_dot3(from_center, from_center)) - radius * radius);
+}
+
+// Distance from the ring within the plane through its axis, with its slope along the ray.
+typedef struct {
+    floatv from_ring, from_ring_slope, slope2;
+} torus_offset;
+
+INLINE torus_offset torus_offset_of(const torus_near *const near) {
+    const floatv rho = twice_sqrt(fma(near->across, near->across, near->rho2_least));
+    torus_offset offset;
+    offset.from_ring = near->excess * inverse(rho + near->major_radius);
+    offset.from_ring_slope = 0.5f * near->excess_slope * inverse(rho);
+    offset.slope2 = fma(offset.from_ring_slope, offset.from_ring_slope, near->height_slope * near->height_slope);
+    offset.slope2 = max(offset.slope2, 1e-30f);
+    return offset;
+}
+
+INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
+                                 floatv *const base) {
+    const torus_path *const path = &peaks->path;
+    const float radius2 = path->major_radius * path->major_radius;
+    *peak = nearer_peak(peaks->first, peaks->second, from, to);
+    *base = clamp(peak->re, from, to);
+    torus_near near = torus_near_at(peaks, *base);
     const intv is_close = max(fabs(near.excess), near.height * near.height) < 0.02f * radius2;
-    if (any_lane(is_close)) {
-        __global const Torus *const torus = peaks->torus;
-        const fine3v from_center = fine_between(peaks->ray, *base, torus->center, torus->center_rest);
-        const finev height = fine_dot3(from_center, fine3(torus->axis, torus->axis_rest));
-        const fine radius = (fine)torus->major_radius + (fine)torus->major_radius_rest;
-        near.height = 2.0f * from_finev(height);
-        near.excess = 4.0f * from_finev(fma(-height, height, fine_dot3(from_center, from_center)) - radius * radius);
-        const floatv rho = twice_sqrt(rho2);
-        const floatv from_ring = near.excess * inverse(rho + near.major_radius);
-        const floatv from_ring_slope = 0.5f * near.excess_slope * inverse(rho);
-        const floatv slope2 = fma(from_ring_slope, from_ring_slope, near.height_slope * near.height_slope);
-        const floatv per_slope2 = inverse(max(slope2, 1e-30f));
-        const floatv ahead = -fma(from_ring, from_ring_slope, near.height * near.height_slope) * per_slope2;
-        const floatv aside = fma(from_ring, near.height_slope, -near.height * from_ring_slope);
-        const floatv least = fma(aside * per_slope2, aside, path->softening2);
-        const floatv lifted = floored(least, path->floor2);
-        const intv is_straight = fma(from_ring, from_ring, near.height * near.height) < 1e-4f * radius2;
-        near.softening2 += select(splat(0.0f), lifted - least, is_straight);
-        peak->re = select(peak->re, *base + ahead, is_straight);
-        peak->im = select(peak->im, 0.5f * twice_sqrt(lifted * per_slope2), is_straight);
+    if (!any_lane(is_close)) {
+        peak->re -= *base;
+        return near;
     }
+
+    // Close to the ring more digits are needed. Next to it the ring is straight, and the root of the quadratic may have
+    // lost too many.
+    torus_near_refine(peaks, *base, &near);
+    torus_offset offset = torus_offset_of(&near);
+    const floatv distance2 = fma(offset.from_ring, offset.from_ring, near.height * near.height);
+    const intv is_next = distance2 < 1e-4f * radius2;
+    if (!any_lane(is_next)) {
+        peak->re -= *base;
+        return near;
+    }
+    const floatv to_nearest = -fma(offset.from_ring, offset.from_ring_slope, near.height * near.height_slope);
+    const floatv nearer = clamp(fma(to_nearest, inverse(offset.slope2), *base), from, to);
+    *base = select(*base, nearer, is_next);
+    near = torus_near_at(peaks, *base);
+    torus_near_refine(peaks, *base, &near);
+    offset = torus_offset_of(&near);
+    const floatv per_slope2 = inverse(offset.slope2);
+    const floatv ahead = -fma(offset.from_ring, offset.from_ring_slope, near.height * near.height_slope) * per_slope2;
+    const floatv aside = fma(offset.from_ring, near.height_slope, -near.height * offset.from_ring_slope);
+    const floatv least = fma(aside * per_slope2, aside, path->softening2);
+    const floatv lifted = floored(least, path->floor2);
+    near.softening2 += select(splat(0.0f), lifted - least, is_next);
+    peak->re = select(peak->re - *base, ahead, is_next);
+    peak->im = select(peak->im, 0.5f * twice_sqrt(lifted * per_slope2), is_next);
     return near;
 }
 
