@@ -48,8 +48,8 @@ INLINE Ray pixel_ray(const View *const view, const uint first) {
     return make_ray(origin, origin, stretch, splat(view->ray_length), view->softening2);
 }
 
-// L(s) - M, M given in two parts.
+// L(s) - M, M given in two parts. Panels that meet in s meet here too: s is not rounded again.
 INLINE fine3v fine_between(const Ray *const ray, const floatv s, const float4 m, const float4 m_rest) {
     const fine3v from_m = fine_subtract3(ray->fine_origin, fine3(m, m_rest));
-    return fine_fma3(ray->fine_toward, to_finev(s * ray->stretch), from_m);
+    return fine_fma3(ray->fine_toward, to_finev(s) * to_finev(ray->stretch), from_m);
 }
