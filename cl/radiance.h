@@ -34,11 +34,13 @@
 
 #ifdef TORI
 #define FIELD torus
+#define FIRST_TWO
 #ifdef EXACT
 #include "integrate/exact.h"
 #else
 #include "integrate/simpson.h"
 #endif
+#undef FIRST_TWO
 #undef FIELD
 #endif
 

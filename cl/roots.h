@@ -59,7 +59,20 @@ floatv twice_sqrt(const floatv x) {
     return twice_sqrt_less(x, splat(0.0f));
 }
 
-// A build option may put another form in its place.
-#ifndef twice_inverse_sqrt
+// The same within 2^-14, where a tolerance of a thousandth leaves room for that (-D COARSE) and estimates are that
+// good.
+#if defined(COARSE) && defined(estimate_inverse) && LANES == 16
+#define coarse_inverse(x) estimate_inverse(x)
+#define coarse_twice_inverse_sqrt(x) (2.0f * estimate_inverse_sqrt(x))
+#else
+#define coarse_inverse(x) inverse(x)
+#define coarse_twice_inverse_sqrt(x) twice_inverse_sqrt_(x)
+#endif
+
+// A build option may put another form of the field in its place.
+#ifdef twice_inverse_sqrt
+#undef coarse_twice_inverse_sqrt
+#define coarse_twice_inverse_sqrt(x) twice_inverse_sqrt(x)
+#else
 #define twice_inverse_sqrt(x) twice_inverse_sqrt_(x)
 #endif

@@ -43,7 +43,7 @@ INLINE PanelSum JOIN(sum_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const 
     floatv right_s[GAUSS_PAIRS], left_s[GAUSS_PAIRS], right_v[GAUSS_PAIRS], left_v[GAUSS_PAIRS];
 #pragma unroll
     for (int k = 0; k < GAUSS_PAIRS; ++k) {
-        const floatv grown = power_of_two(map->half_length * node[k]), shrunk = inverse(grown);
+        const floatv grown = power_of_two(map->half_length * node[k]), shrunk = coarse_inverse(grown);
         const floatv right_up = map->rising * grown, right_down = map->falling * shrunk;
         const floatv left_up = map->rising * shrunk, left_down = map->falling * grown;
         right_s[k] = parameter_of(map, map->middle + (right_up - right_down));
@@ -69,27 +69,37 @@ INLINE PanelSum JOIN(sum_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const 
     return result;
 }
 
+#ifdef FIRST_TWO
+// The two panels on both sides of a cut at once: what one waits for, the other fills. Whether both are resolved.
+INLINE bool JOIN(first_two_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay, const float threshold,
+                                    const floatv cut, floatv *const integral) {
+    const intv has_first = cut >= SHORTEST_PANEL, has_second = cut <= 1.0f - SHORTEST_PANEL;
+    const floatv first_end = max(cut, SHORTEST_PANEL), second_begin = min(cut, 1.0f - SHORTEST_PANEL);
+    const JOIN(panel_of_, FIELD) first = JOIN(open_, FIELD)(peaks, decay, splat(0.0f), first_end);
+    const JOIN(panel_of_, FIELD) second = JOIN(open_, FIELD)(peaks, decay, second_begin, splat(1.0f));
+    const PanelSum of_first = JOIN(sum_, FIELD)(peaks, decay, &first);
+    const PanelSum of_second = JOIN(sum_, FIELD)(peaks, decay, &second);
+    *integral = select(splat(0.0f), of_first.integral, has_first) + select(splat(0.0f), of_second.integral, has_second);
+    const floatv allowed = threshold * *integral;
+    return !any_lane(max(of_first.unresolved2, of_second.unresolved2) > allowed * allowed);
+}
+#endif
+
 INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
                                   const Quadrature *const quadrature) {
     const Decay decay = quadrature->decay;
     const JOIN(FIELD, _peaks) peaks = JOIN(FIELD, _peaks_along)(ray, sources, index);
     floatv ends[MOST_ENDS];
     uint open = JOIN(FIELD, _cuts)(&peaks, ends);
+    const float threshold = quadrature->JOIN(FIELD, _threshold);
     uint cuts = 0, nodes = 0;
     floatv integral = splat(0.0f), from = splat(0.0f);
-#ifdef TORI
-    if (open == 2) {
-        const floatv mid = ends[1];
-        const JOIN(panel_of_, FIELD) l = JOIN(open_, FIELD)(&peaks, decay, from, max(mid, SHORTEST_PANEL));
-        const JOIN(panel_of_, FIELD) r =
-            JOIN(open_, FIELD)(&peaks, decay, min(mid, 1.0f - SHORTEST_PANEL), splat(1.0f));
-        const PanelSum a = JOIN(sum_, FIELD)(&peaks, decay, &l);
-        const PanelSum b = JOIN(sum_, FIELD)(&peaks, decay, &r);
-        const floatv total = a.integral + b.integral;
-        const floatv allowed = quadrature->JOIN(FIELD, _threshold) * total;
-        if (!any_lane(max(a.unresolved2, b.unresolved2) > allowed * allowed))
-            return total;
-    }
+#ifdef FIRST_TWO
+    nodes += 4 * GAUSS_PAIRS;
+    if (JOIN(first_two_, FIELD)(&peaks, decay, threshold, ends[1], &integral))
+        open = 0;
+    else
+        integral = splat(0.0f);
 #endif
     while (open > 0) {
         const floatv to = ends[open - 1];
@@ -106,7 +116,7 @@ INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sou
             const PanelSum panel = JOIN(sum_, FIELD)(&peaks, decay, &opened);
             nodes += 2 * GAUSS_PAIRS;
             value = select(panel.integral, value, is_closed);
-            const floatv allowed = quadrature->JOIN(FIELD, _threshold) * (integral + value);
+            const floatv allowed = threshold * (integral + value);
             const intv is_unseen = panel.is_broken & (BEYOND_NODES * value > allowed);
             const intv is_rough = (panel.unresolved2 > allowed * allowed) | is_unseen;
             if (cuts < MOST_CUTS && open < MOST_ENDS && any_lane(is_rough & !is_closed)) {

@@ -79,5 +79,5 @@ INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from,
 
 // s - base of the point that lies `x` ahead of the base in v.
 floatv parameter_of(const Panel *const panel, const floatv x) {
-    return x * inverse(fma(-panel->bend, x, panel->stretch));
+    return x * coarse_inverse(fma(-panel->bend, x, panel->stretch));
 }

@@ -313,6 +313,6 @@ INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
     point.core = near->core;
     floatv distance2;
     const floatv nearest = nearest_on_curve(&near->path, &point, &distance2);
-    const floatv field = twice_inverse_sqrt(max(distance2 + near->path.softening2, 0.5f * near->path.floor2));
+    const floatv field = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, 0.5f * near->path.floor2));
     return near->path.spline_count ? field * curve_intensity(&near->path, nearest) : field;
 }

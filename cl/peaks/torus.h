@@ -39,11 +39,12 @@ INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const 
     const floatv root_im = select(copysign(larger, im), smaller, re > 0.0f);
     const floatv middle = to_nearest * per_length;
     const floatv lift = radius * climb;
-    const floatv blur = 0.5f * twice_sqrt(ray->softening2 + 0.5f * ray->floor2);
+    const floatv blur2 = ray->softening2 + 0.5f * ray->floor2;
+    const floatv below = lift - root_im, above = lift + root_im;
     peaks.first.re = middle - root_re;
     peaks.second.re = middle + root_re;
-    peaks.first.im = max(fabs(lift - root_im), blur) * per_length;
-    peaks.second.im = max(fabs(lift + root_im), blur) * per_length;
+    peaks.first.im = 0.5f * twice_sqrt(fma(below, below, blur2)) * per_length;
+    peaks.second.im = 0.5f * twice_sqrt(fma(above, above, blur2)) * per_length;
     return peaks;
 }
 
@@ -173,5 +174,5 @@ INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv height = fma(near->height_slope, x, near->height);
     const floatv aside2 = fma(height, height, near->softening2);
     const floatv scaled2 = fma(excess, excess, aside2 * (sum * sum));
-    return sum * twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f));
+    return sum * coarse_twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f));
 }

@@ -52,8 +52,9 @@ const KIND_OPTIONS: [&str; 4] = [" -D SPHERES", " -D CYLINDERS", " -D TORI", " -
 enum Variant {
     Simpson,
     Exact {
-        /// Gauss-Legendre nodes of a panel.
+        /// Of the rule: what its kernels are built with.
         nodes: u32,
+        coarse: bool,
     },
 }
 
@@ -61,7 +62,10 @@ impl Variant {
     fn of(method: Method, rule: Rule) -> Self {
         match method {
             Method::Simpson => Self::Simpson,
-            Method::Exact => Self::Exact { nodes: rule.nodes },
+            Method::Exact => Self::Exact {
+                nodes: rule.nodes,
+                coarse: rule.coarse,
+            },
         }
     }
 }
@@ -161,13 +165,13 @@ impl OpenClRenderer {
     }
 
     /// Makes sure of a kernel.
-    fn prepare(&mut self, task: Task) -> Result<()> {
+    fn prepare(&mut self, task: Task, rule: &Rule) -> Result<()> {
         if self.kernels.contains_key(&task) {
             return Ok(());
         }
         let mut definitions = match task.method {
             Variant::Simpson => String::new(),
-            Variant::Exact { nodes } => Rule::definitions(nodes),
+            Variant::Exact { .. } => rule.definitions(),
         };
         for (option, is_there) in KIND_OPTIONS.into_iter().zip(task.kinds) {
             if is_there {
@@ -205,7 +209,7 @@ impl OpenClRenderer {
             kinds: counts(&sources).map(|count| count > 0),
             has_rays: rays.is_some(),
         };
-        self.prepare(task)?;
+        self.prepare(task, &rule)?;
         let nodes = match task.method {
             Variant::Simpson => pack::nodes(scene.integration.divisions, scene.decay),
             Variant::Exact { .. } => Vec::new(),
@@ -227,7 +231,7 @@ impl OpenClRenderer {
             work: Work {
                 node_count: match task.method {
                     Variant::Simpson => nodes.len() as u32,
-                    Variant::Exact { nodes } => 8 * nodes,
+                    Variant::Exact { nodes, .. } => 8 * nodes,
                 },
                 source_count: source_count(&sources),
                 fewest_pixels: (256 * units).max(1024),

@@ -8,6 +8,8 @@ use crate::scene::Integration;
 pub struct Rule {
     /// Nodes of a panel, an even number.
     pub nodes: u32,
+    /// Whether a relative error of 2^-14 at each node does not matter.
+    pub coarse: bool,
     /// The threshold of a torus.
     pub torus_threshold: f32,
     /// The threshold of a curve, whose field has kinks and jumps.
@@ -18,14 +20,15 @@ pub struct Rule {
 const RULES: [(f64, Rule); 5] = [
     (1e-1, rule(4, 1.0, 1e-1)),
     (1e-2, rule(6, 1.0, 5e-3)),
-    (1e-3, rule(8, 1.0, 1e-3)),
+    (1e-3, rule(8, 1e-2, 5e-4)),
     (1e-4, rule(10, 1e-3, 1e-4)),
-    (0.0, rule(10, 2e-5, 1e-5)),
+    (0.0, rule(10, 5e-5, 1e-5)),
 ];
 
 const fn rule(nodes: u32, torus_threshold: f32, curve_threshold: f32) -> Rule {
     Rule {
         nodes,
+        coarse: nodes <= 8,
         torus_threshold,
         curve_threshold,
     }
@@ -42,10 +45,10 @@ impl Rule {
             .map_or(strictest, |(_, rule)| *rule)
     }
 
-    /// A rule of so many nodes as the kernels' compiler gets it: nodes in (0,1), their weights, and those weights times the Legendre
+    /// The rule as the kernels' compiler gets it: nodes in (0,1), their weights, and those weights times the Legendre
     /// polynomials of the two highest degrees that the nodes can tell apart, one even, one odd.
-    pub fn definitions(nodes: u32) -> String {
-        let count = nodes as usize;
+    pub fn definitions(&self) -> String {
+        let count = self.nodes as usize;
         let nodes: Vec<Node> = gauss_legendre(count);
         let list = |value: fn(&Node, usize) -> f64| {
             let values: Vec<String> = nodes
@@ -56,12 +59,13 @@ impl Rule {
         };
         format!(
             "-D EXACT -D GAUSS_PAIRS={} -D GAUSS_NODES={{{}}} -D GAUSS_WEIGHTS={{{}}} -D GAUSS_NULL_EVEN={{{}}} \
-             -D GAUSS_NULL_ODD={{{}}}",
+             -D GAUSS_NULL_ODD={{{}}}{}",
             count / 2,
             list(|node, _| node.x),
             list(|node, _| node.weight),
             list(|node, count| node.weight * legendre(count - 2, node.x).0),
             list(|node, count| node.weight * legendre(count - 1, node.x).0),
+            if self.coarse { " -D COARSE" } else { "" }
         )
     }
 }
