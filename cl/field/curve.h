@@ -129,8 +129,12 @@ INLINE floatv nearest_on_curve(const curve_path *const path, const curve_point *
     const floatv p = point->p, h = point->h;
     const floatv discriminant = fma(p * p, p, h * h);
     const intv has_three = discriminant <= 0.0f;
-    floatv nearest = clamp(single_root(p, h, discriminant) - path->vertex, -0.5f, 0.5f);
-    *distance2 = curve_distance2(path, point, nearest);
+    floatv nearest = splat(0.0f);
+    *distance2 = splat(0.0f);
+    if (any_lane(!has_three)) {
+        nearest = clamp(single_root(p, h, discriminant) - path->vertex, -0.5f, 0.5f);
+        *distance2 = curve_distance2(path, point, nearest);
+    }
     if (any_lane(has_three)) {
         floatv first, second;
         outer_roots(p, h, &first, &second);

@@ -14,6 +14,7 @@ typedef struct {
     floatv first, second; // parameters s of the closest approaches; the same where there is but one
     floatv first_distance2, second_distance2;
     intv are_two;
+    Linear beyond_first, beyond_last; // (P - C).C' at both ends
     const Ray *ray;
     __global const Curve *curve;
 } curve_peaks;
@@ -44,6 +45,16 @@ floatv closest_to_core(const curve_path *const path, const floatv span2, const f
     const floatv c = fma(s, path->normal.slope, origin.normal);
     *distance2 = fma(a, a, fma(b, b, c * c));
     return s;
+}
+
+// (P - C).C' at an end of the curve, along the ray.
+Linear beyond_end(const curve_path *const path, const float x) {
+    const float velocity_across = fma(2.0f * path->bend, x, path->velocity_across);
+    const float end_along = path->velocity_along * x;
+    const float end_across = fma(path->bend, x, path->velocity_across) * x;
+    return linear(
+        fma(path->along.at - end_along, splat(path->velocity_along), (path->across.at - end_across) * velocity_across),
+        fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across));
 }
 
 curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
@@ -87,6 +98,8 @@ curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources
     }
     peaks.first = closest_to_core(path, peaks.span2, x_first, &peaks.first_distance2);
     peaks.second = closest_to_core(path, peaks.span2, x_second, &peaks.second_distance2);
+    peaks.beyond_first = beyond_end(path, -0.5f);
+    peaks.beyond_last = beyond_end(path, 0.5f);
     return peaks;
 }
 
@@ -94,16 +107,6 @@ curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources
 floatv zero_of(const Linear value) {
     const intv never = fabs(value.slope) < 1e-30f;
     return select(-value.at / select(value.slope, splat(1.0f), never), splat(0.0f), never);
-}
-
-// (P - C).C' at an end of the curve, along the ray.
-Linear beyond_end(const curve_path *const path, const float x) {
-    const float velocity_across = fma(2.0f * path->bend, x, path->velocity_across);
-    const float end_along = path->velocity_along * x;
-    const float end_across = fma(path->bend, x, path->velocity_across) * x;
-    return linear(
-        fma(path->along.at - end_along, splat(path->velocity_along), (path->across.at - end_across) * velocity_across),
-        fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across));
 }
 
 // The ray's crossing of the plane through an end, where that end becomes the nearest point, or ceases to be.
@@ -136,8 +139,16 @@ INLINE floatv equidistant(const curve_peaks *const peaks, const floatv x, const 
 
 // Where both ends are nearest points of their parts, and equally far.
 INLINE floatv ends_cut(const curve_peaks *const peaks, const Linear beyond_first, const Linear beyond_last) {
-    const floatv s = equidistant(peaks, splat(-0.5f), splat(0.5f));
-    return select(splat(0.0f), s, (linear_at(beyond_first, s) <= 0.0f) & (linear_at(beyond_last, s) >= 0.0f));
+    const curve_path *const path = &peaks->path;
+    const Linear difference =
+        linear(fma(path->along.at, splat(path->velocity_along),
+                   (path->across.at - 0.25f * path->bend) * path->velocity_across),
+               fma(path->along.slope, splat(path->velocity_along), path->across.slope * path->velocity_across));
+    const floatv s = zero_of(difference);
+    const intv is_there = (linear_at(beyond_first, s) <= 0.0f) & (linear_at(beyond_last, s) >= 0.0f);
+    if (!any_lane(is_there))
+        return splat(0.0f);
+    return select(splat(0.0f), equidistant(peaks, splat(-0.5f), splat(0.5f)), is_there);
 }
 
 // Where the nearest point jumps across the parabola's axis; else between two close approaches.
@@ -146,19 +157,20 @@ INLINE floatv middle_cut(const curve_peaks *const peaks) {
     const floatv between = select(splat(0.0f), 0.5f * (peaks->first + peaks->second), peaks->are_two);
     if (path->is_straight)
         return between;
-    const floatv s = equidistant(peaks, splat(-1.0f - path->vertex), splat(1.0f - path->vertex));
-    const floatv reach2 = -3.0f * linear_at(path->p, s);
+    const floatv reach2 = -3.0f * linear_at(path->p, zero_of(path->h));
     const float reach = min(0.5f - path->vertex, 0.5f + path->vertex);
-    return select(between, s, (reach2 > 0.0f) & (reach2 < reach * fabs(reach)));
+    const intv jumps = (reach2 > 0.0f) & (reach2 < reach * fabs(reach));
+    if (!any_lane(jumps))
+        return between;
+    return select(between, equidistant(peaks, splat(-1.0f - path->vertex), splat(1.0f - path->vertex)), jumps);
 }
 
 // The ends of the panels, the last one first.
 uint curve_cuts(const curve_peaks *const peaks, floatv *const ends) {
     const curve_path *const path = &peaks->path;
-    const Linear beyond_first = beyond_end(path, -0.5f), beyond_last = beyond_end(path, 0.5f);
-    const floatv a = clamp(end_cut(path, beyond_first, -0.5f), 0.0f, 1.0f);
-    const floatv b = clamp(end_cut(path, beyond_last, 0.5f), 0.0f, 1.0f);
-    const floatv c = clamp(ends_cut(peaks, beyond_first, beyond_last), 0.0f, 1.0f);
+    const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, 1.0f);
+    const floatv b = clamp(end_cut(path, peaks->beyond_last, 0.5f), 0.0f, 1.0f);
+    const floatv c = clamp(ends_cut(peaks, peaks->beyond_first, peaks->beyond_last), 0.0f, 1.0f);
     const floatv d = clamp(middle_cut(peaks), 0.0f, 1.0f);
     const floatv less_ab = min(a, b), more_ab = max(a, b), less_cd = min(c, d), more_cd = max(c, d);
     const floatv inner = max(less_ab, less_cd), outer = min(more_ab, more_cd);
@@ -170,28 +182,50 @@ uint curve_cuts(const curve_peaks *const peaks, floatv *const ends) {
     return 5;
 }
 
-// The panels on which one end of the curve is the nearest point throughout: points nearest to it form a convex set, so
-// both ends of the panel tell.
+// Whether an end of the curve, at x, is the nearest point from all of a panel. The points nearest to an end form a
+// convex set: both ends of the panel tell. Where the other end is a nearest point of its part too, only that one
+// competes; else the curve between them does where the cubic has three roots.
+INLINE intv end_is_nearest(const curve_path *const path, const floatv x, const intv are_both, const floatv s) {
+    const curve_point point = curve_point_at(path, s);
+    const floatv to_end = curve_distance2(path, &point, x), to_other = curve_distance2(path, &point, -x);
+    intv is_nearest = !are_both | (to_end <= to_other);
+    const intv has_three = fma(point.p * point.p, point.p, point.h * point.h) <= 0.0f;
+    const intv is_open = is_nearest & !are_both & (path->is_straight ? x == x : has_three);
+    if (any_lane(is_open)) {
+        floatv distance2;
+        const floatv nearest = nearest_on_curve(path, &point, &distance2);
+        is_nearest = is_nearest & (!is_open | (nearest == x));
+    }
+    return is_nearest;
+}
+
+// The panels on which one end of the curve is the nearest point throughout, and their integrals.
 INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, const floatv from, const floatv to,
                          floatv *const integral) {
     const curve_path *const path = &peaks->path;
-    const floatv inside = 1e-4f * (to - from);
-    const curve_point begin = curve_point_at(path, from + inside), end = curve_point_at(path, to - inside);
-    floatv distance2;
-    const floatv x_begin = nearest_on_curve(path, &begin, &distance2);
-    const floatv x_end = nearest_on_curve(path, &end, &distance2);
-    const intv is_closed = (fabs(x_begin) == 0.5f) & (x_begin == x_end);
+    const floatv middle = 0.5f * (from + to), inside = 1e-4f * (to - from);
+    const intv is_first = linear_at(peaks->beyond_first, middle) <= 0.0f;
+    const intv is_last = linear_at(peaks->beyond_last, middle) >= 0.0f;
+    const intv are_both = is_first & is_last;
+    intv is_closed = is_first | is_last;
     *integral = splat(0.0f);
     if (!any_lane(is_closed))
         return is_closed;
+    const curve_point point = curve_point_at(path, middle);
+    const intv is_last_nearer =
+        curve_distance2(path, &point, splat(0.5f)) < curve_distance2(path, &point, splat(-0.5f));
+    const floatv x = select(splat(-0.5f), splat(0.5f), is_last & (!is_first | is_last_nearer));
+    is_closed &= end_is_nearest(path, x, are_both, from + inside) & end_is_nearest(path, x, are_both, to - inside);
+    if (!any_lane(is_closed))
+        return is_closed;
     floatv least;
-    const floatv nearest = closest_to_core(path, peaks->span2, x_begin, &least);
+    const floatv nearest = closest_to_core(path, peaks->span2, x, &least);
     const floatv length = 0.5f * twice_sqrt(peaks->span2);
     const Quadratic to_end = {length, -length * nearest, least + path->softening2};
     // Lengths are doubled.
     *integral = 2.0f * closed_form(&to_end, path->floor2, decay, from, to);
     if (path->spline_count)
-        *integral *= curve_intensity(path, x_begin);
+        *integral *= curve_intensity(path, x);
     return is_closed;
 }
 
@@ -229,6 +263,14 @@ INLINE intv curve_is_broken(const curve_peaks *const peaks, const floatv from, c
 // the fastest change; then both sides, continued as they are, meet in the jump.
 INLINE floatv curve_split(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv middle) {
     const curve_path *const path = &peaks->path;
+    intv can_jump = from > to;
+    for (float share = 0.0f; share < 1.1f; share += 0.25f) {
+        const floatv s = fma(to - from, splat(share), from);
+        const floatv p = linear_at(path->p, s), h = linear_at(path->h, s);
+        can_jump |= fma(p * p, p, h * h) <= 0.0f;
+    }
+    if (path->is_straight || !any_lane(can_jump))
+        return middle;
     const floatv inside = 1e-4f * (to - from);
     curve_sight left = curve_seen_from(path, from + inside), right = curve_seen_from(path, to - inside);
     const floatv change = fabs(right.x - left.x);
@@ -281,8 +323,14 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     const curve_point point = curve_point_at(path, *base);
     floatv distance2;
     const floatv x = nearest_on_curve(path, &point, &distance2);
-    const float3v offset = offset_from_core(peaks, *base, x);
-    distance2 = dot3(offset, offset);
+    const curve_offset seen = offset_from_curve(path, &point, x);
+    float3v offset = {seen.along, seen.across, point.normal};
+    const float3v from_middle = {point.along, point.across, point.normal};
+    const floatv size2 = dot3(from_middle, from_middle) + path->velocity_along * path->velocity_along;
+    if (any_lane(distance2 < 1e-3f * size2)) {
+        offset = offset_from_core(peaks, *base, x);
+        distance2 = dot3(offset, offset);
+    }
     const floatv velocity_across = curve_velocity_across(path, x);
     const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
     const floatv facing = fma(-2.0f * path->bend, offset.y, speed2);
