@@ -33,7 +33,7 @@ typedef struct {
     floatv softening2, floor2;
 } curve_path;
 
-curve_path curve_along(const Ray *const ray, const Sources *const sources, const uint index) {
+INLINE curve_path curve_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Curve *const curve = &sources->curves[index];
     const float3v from_middle = subtract3(ray->origin, uniform3(curve->middle));
     const float3v along = uniform3(curve->along), across = uniform3(curve->across), normal = uniform3(curve->normal);
@@ -121,31 +121,52 @@ floatv nearest_on_straight(const curve_path *const path, const curve_point *cons
     return x;
 }
 
+// Where the cubic has three real roots.
+INLINE intv has_three_roots(const floatv p, const floatv h) {
+    return fma(p * p, p, h * h) <= 0.0f;
+}
+
+// Which numbers of roots occur among the lanes.
+typedef struct {
+    bool one, three;
+} RootCounts;
+
+INLINE RootCounts roots_at(const curve_point *const point) {
+    const intv has_three = has_three_roots(point->p, point->h);
+    const RootCounts counts = {any_lane(!has_three), any_lane(has_three)};
+    return counts;
+}
+
 // x = t* - 1/2 of the nearest point, and its squared distance. The middle root of three is a greatest distance; the
 // outer ones, clamped to the curve, stand for its ends too. Of two equally near points the one with less t wins.
-INLINE floatv nearest_on_curve(const curve_path *const path, const curve_point *const point, floatv *const distance2) {
+INLINE floatv nearest_of_roots(const curve_path *const path, const curve_point *const point, const RootCounts counts,
+                               floatv *const distance2) {
     if (path->is_straight)
         return nearest_on_straight(path, point, distance2);
     const floatv p = point->p, h = point->h;
     const floatv discriminant = fma(p * p, p, h * h);
-    const intv has_three = discriminant <= 0.0f;
     floatv nearest = splat(0.0f);
     *distance2 = splat(0.0f);
-    if (any_lane(!has_three)) {
+    if (counts.one) {
         nearest = clamp(single_root(p, h, discriminant) - path->vertex, -0.5f, 0.5f);
         *distance2 = curve_distance2(path, point, nearest);
     }
-    if (any_lane(has_three)) {
+    if (counts.three) {
         floatv first, second;
         outer_roots(p, h, &first, &second);
         first = clamp(first - path->vertex, -0.5f, 0.5f);
         second = clamp(second - path->vertex, -0.5f, 0.5f);
         const floatv to_first = curve_distance2(path, point, first);
         const floatv to_second = curve_distance2(path, point, second);
+        const intv has_three = discriminant <= 0.0f;
         *distance2 = select(*distance2, min(to_first, to_second), has_three);
         nearest = select(nearest, select(first, second, to_second < to_first), has_three);
     }
     return nearest;
+}
+
+INLINE floatv nearest_on_curve(const curve_path *const path, const curve_point *const point, floatv *const distance2) {
+    return nearest_of_roots(path, point, roots_at(point), distance2);
 }
 
 // Local intensity at C(1/2 + x).

@@ -33,7 +33,7 @@ INLINE JOIN(panel_of_, FIELD)
 }
 
 INLINE PanelSum JOIN(sum_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay,
-                                  const JOIN(panel_of_, FIELD) *const panel) {
+                                  JOIN(panel_of_, FIELD) *const panel) {
     const float node[GAUSS_PAIRS] = GAUSS_NODES;
     const float weight[GAUSS_PAIRS] = GAUSS_WEIGHTS;
     const float null_even[GAUSS_PAIRS] = GAUSS_NULL_EVEN;
@@ -51,6 +51,7 @@ INLINE PanelSum JOIN(sum_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const 
         right_v[k] = right_up + right_down;
         left_v[k] = left_up + left_down;
     }
+    JOIN(FIELD, _look_ahead)(&panel->near, left_s, right_s, GAUSS_PAIRS);
     floatv sum = splat(0.0f), even = splat(0.0f), odd = splat(0.0f);
 #pragma unroll
     for (int k = 0; k < GAUSS_PAIRS; ++k) {
@@ -75,8 +76,8 @@ INLINE bool JOIN(first_two_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, cons
                                     const floatv cut, floatv *const integral) {
     const intv has_first = cut >= SHORTEST_PANEL, has_second = cut <= 1.0f - SHORTEST_PANEL;
     const floatv first_end = max(cut, SHORTEST_PANEL), second_begin = min(cut, 1.0f - SHORTEST_PANEL);
-    const JOIN(panel_of_, FIELD) first = JOIN(open_, FIELD)(peaks, decay, splat(0.0f), first_end);
-    const JOIN(panel_of_, FIELD) second = JOIN(open_, FIELD)(peaks, decay, second_begin, splat(1.0f));
+    JOIN(panel_of_, FIELD) first = JOIN(open_, FIELD)(peaks, decay, splat(0.0f), first_end);
+    JOIN(panel_of_, FIELD) second = JOIN(open_, FIELD)(peaks, decay, second_begin, splat(1.0f));
     const PanelSum of_first = JOIN(sum_, FIELD)(peaks, decay, &first);
     const PanelSum of_second = JOIN(sum_, FIELD)(peaks, decay, &second);
     *integral = select(splat(0.0f), of_first.integral, has_first) + select(splat(0.0f), of_second.integral, has_second);
@@ -112,7 +113,7 @@ INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sou
         floatv value;
         const intv is_closed = JOIN(FIELD, _closed)(&peaks, decay, from, end, &value) | is_empty;
         if (any_lane(!is_closed)) {
-            const JOIN(panel_of_, FIELD) opened = JOIN(open_, FIELD)(&peaks, decay, from, end);
+            JOIN(panel_of_, FIELD) opened = JOIN(open_, FIELD)(&peaks, decay, from, end);
             const PanelSum panel = JOIN(sum_, FIELD)(&peaks, decay, &opened);
             nodes += 2 * GAUSS_PAIRS;
             value = select(panel.integral, value, is_closed);

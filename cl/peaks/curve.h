@@ -57,7 +57,7 @@ Linear beyond_end(const curve_path *const path, const float x) {
         fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across));
 }
 
-curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
+INLINE curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
     curve_peaks peaks;
     peaks.path = curve_along(ray, sources, index);
     peaks.ray = ray;
@@ -166,7 +166,7 @@ INLINE floatv middle_cut(const curve_peaks *const peaks) {
 }
 
 // The ends of the panels, the last one first.
-uint curve_cuts(const curve_peaks *const peaks, floatv *const ends) {
+INLINE uint curve_cuts(const curve_peaks *const peaks, floatv *const ends) {
     const curve_path *const path = &peaks->path;
     const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, 1.0f);
     const floatv b = clamp(end_cut(path, peaks->beyond_last, 0.5f), 0.0f, 1.0f);
@@ -182,20 +182,30 @@ uint curve_cuts(const curve_peaks *const peaks, floatv *const ends) {
     return 5;
 }
 
+// A point of the ray and the parameter of the curve's point nearest to it. A call: it is asked for in many places, and
+// rarely.
+typedef struct {
+    floatv s, x;
+} curve_sight;
+
+curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
+    const curve_point point = curve_point_at(path, s);
+    floatv distance2;
+    const curve_sight sight = {s, nearest_on_curve(path, &point, &distance2)};
+    return sight;
+}
+
 // Whether an end of the curve, at x, is the nearest point from all of a panel. The points nearest to an end form a
 // convex set: both ends of the panel tell. Where the other end is a nearest point of its part too, only that one
 // competes; else the curve between them does where the cubic has three roots.
 INLINE intv end_is_nearest(const curve_path *const path, const floatv x, const intv are_both, const floatv s) {
     const curve_point point = curve_point_at(path, s);
-    const floatv to_end = curve_distance2(path, &point, x), to_other = curve_distance2(path, &point, -x);
-    intv is_nearest = !are_both | (to_end <= to_other);
-    const intv has_three = fma(point.p * point.p, point.p, point.h * point.h) <= 0.0f;
-    const intv is_open = is_nearest & !are_both & (path->is_straight ? x == x : has_three);
-    if (any_lane(is_open)) {
-        floatv distance2;
-        const floatv nearest = nearest_on_curve(path, &point, &distance2);
-        is_nearest = is_nearest & (!is_open | (nearest == x));
-    }
+    intv is_nearest = x == x;
+    if (any_lane(are_both))
+        is_nearest = !are_both | (curve_distance2(path, &point, x) <= curve_distance2(path, &point, -x));
+    const intv is_open = !are_both & (path->is_straight ? x == x : has_three_roots(point.p, point.h));
+    if (any_lane(is_open))
+        is_nearest &= !is_open | (curve_seen_from(path, s).x == x);
     return is_nearest;
 }
 
@@ -211,10 +221,13 @@ INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, cons
     *integral = splat(0.0f);
     if (!any_lane(is_closed))
         return is_closed;
-    const curve_point point = curve_point_at(path, middle);
-    const intv is_last_nearer =
-        curve_distance2(path, &point, splat(0.5f)) < curve_distance2(path, &point, splat(-0.5f));
-    const floatv x = select(splat(-0.5f), splat(0.5f), is_last & (!is_first | is_last_nearer));
+    intv is_last_nearer = is_last;
+    if (any_lane(are_both)) {
+        const curve_point point = curve_point_at(path, middle);
+        const floatv to_first = curve_distance2(path, &point, splat(-0.5f));
+        is_last_nearer &= !is_first | (curve_distance2(path, &point, splat(0.5f)) < to_first);
+    }
+    const floatv x = select(splat(-0.5f), splat(0.5f), is_last_nearer);
     is_closed &= end_is_nearest(path, x, are_both, from + inside) & end_is_nearest(path, x, are_both, to - inside);
     if (!any_lane(is_closed))
         return is_closed;
@@ -227,18 +240,6 @@ INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, cons
     if (path->spline_count)
         *integral *= curve_intensity(path, x);
     return is_closed;
-}
-
-// A point of the ray and the parameter of the curve's point nearest to it.
-typedef struct {
-    floatv s, x;
-} curve_sight;
-
-INLINE curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
-    const curve_point point = curve_point_at(path, s);
-    floatv distance2;
-    const curve_sight sight = {s, nearest_on_curve(path, &point, &distance2)};
-    return sight;
 }
 
 curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is_b) {
@@ -267,7 +268,7 @@ INLINE floatv curve_split(const curve_peaks *const peaks, const floatv from, con
     for (float share = 0.0f; share < 1.1f; share += 0.25f) {
         const floatv s = fma(to - from, splat(share), from);
         const floatv p = linear_at(path->p, s), h = linear_at(path->h, s);
-        can_jump |= fma(p * p, p, h * h) <= 0.0f;
+        can_jump |= has_three_roots(p, h);
     }
     if (path->is_straight || !any_lane(can_jump))
         return middle;
@@ -308,6 +309,7 @@ INLINE float3v offset_from_core(const curve_peaks *const peaks, const floatv s, 
 typedef struct {
     curve_path path;
     floatv core;
+    RootCounts counts;
 } curve_near;
 
 INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
@@ -345,7 +347,7 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     peak->re = -slope * per_curvature;
     peak->im = 0.5f * twice_sqrt(fma(lowest, per_curvature, 0.5f * path->floor2 * per_span2));
 
-    curve_near near = {*path, x};
+    curve_near near = {*path, x, {true, true}};
     near.path.along.at = offset.x;
     near.path.across.at = offset.y;
     near.path.normal.at = offset.z;
@@ -355,12 +357,27 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     return near;
 }
 
+// Looks which numbers of roots occur at any node, so that no node has to ask.
+INLINE void curve_look_ahead(curve_near *const near, const floatv *const left, const floatv *const right,
+                             const uint count) {
+    intv has_three = left[0] != left[0], has_one = has_three;
+    for (uint k = 0; k < count; ++k) {
+        const Linear p = near->path.p, h = near->path.h;
+        const intv left_three = has_three_roots(linear_at(p, left[k]), linear_at(h, left[k]));
+        const intv right_three = has_three_roots(linear_at(p, right[k]), linear_at(h, right[k]));
+        has_three |= left_three | right_three;
+        has_one |= !(left_three & right_three);
+    }
+    near->counts.one = any_lane(has_one);
+    near->counts.three = any_lane(has_three);
+}
+
 // The field at s = base + x.
 INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
     curve_point point = curve_point_at(&near->path, x);
     point.core = near->core;
     floatv distance2;
-    const floatv nearest = nearest_on_curve(&near->path, &point, &distance2);
+    const floatv nearest = nearest_of_roots(&near->path, &point, near->counts, &distance2);
     const floatv field = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, 0.5f * near->path.floor2));
     return near->path.spline_count ? field * curve_intensity(&near->path, nearest) : field;
 }

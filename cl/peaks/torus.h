@@ -165,6 +165,11 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     return near;
 }
 
+// Every node is like every other.
+INLINE void torus_look_ahead(torus_near *const near, const floatv *const left, const floatv *const right,
+                             const uint count) {
+}
+
 // The field at s = base + x: 1 / sqrt((rho - R)^2 + z^2) with rho - R = (rho^2 - R^2) / (rho + R).
 INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv across = fma(near->across_slope, x, near->across);
