@@ -8,10 +8,10 @@
 
 // Panels that may be open at once, cuts of a ray's panels in all, and the length in s below which a panel is left to
 // the next one.
-#ifndef MOST_ENDS
-#define MOST_ENDS 24
+#ifndef MOST_PANELS
+#define MOST_PANELS 24
 #define MOST_CUTS 64
-#define SHORTEST_PANEL 1e-6f
+#define SHORTEST_PANEL 1e-7f
 #define BEYOND_NODES 0.03f
 #define LN_2 0.693147181f
 #endif
@@ -89,47 +89,47 @@ INLINE bool JOIN(first_two_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, cons
 INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
                                   const Quadrature *const quadrature) {
     const Decay decay = quadrature->decay;
-    const JOIN(FIELD, _peaks) peaks = JOIN(FIELD, _peaks_along)(ray, sources, index);
-    floatv ends[MOST_ENDS];
-    uint open = JOIN(FIELD, _cuts)(&peaks, ends);
     const float threshold = quadrature->JOIN(FIELD, _threshold);
+    const JOIN(FIELD, _peaks) peaks = JOIN(FIELD, _peaks_along)(ray, sources, index);
+    floatv all_from[MOST_PANELS], all_to[MOST_PANELS], integral;
+    uint open = JOIN(FIELD, _panels)(&peaks, decay, all_from, all_to, &integral);
     uint cuts = 0, nodes = 0;
-    floatv integral = splat(0.0f), from = splat(0.0f);
 #ifdef FIRST_TWO
     nodes += 4 * GAUSS_PAIRS;
-    if (JOIN(first_two_, FIELD)(&peaks, decay, threshold, ends[1], &integral))
+    if (JOIN(first_two_, FIELD)(&peaks, decay, threshold, all_to[1], &integral))
         open = 0;
     else
         integral = splat(0.0f);
 #endif
     while (open > 0) {
-        const floatv to = ends[open - 1];
+        --open;
+        const floatv from = all_from[open], to = all_to[open];
         const intv is_empty = to - from < SHORTEST_PANEL;
-        if (!any_lane(!is_empty)) {
-            --open;
+        if (!any_lane(!is_empty))
             continue;
-        }
         const floatv end = max(to, from + SHORTEST_PANEL);
-        floatv value;
-        const intv is_closed = JOIN(FIELD, _closed)(&peaks, decay, from, end, &value) | is_empty;
-        if (any_lane(!is_closed)) {
+        floatv value = splat(0.0f);
+        intv is_done = is_empty;
+        if (cuts > 0)
+            is_done |= JOIN(FIELD, _closed)(&peaks, decay, from, end, &value);
+        if (any_lane(!is_done)) {
             JOIN(panel_of_, FIELD) opened = JOIN(open_, FIELD)(&peaks, decay, from, end);
             const PanelSum panel = JOIN(sum_, FIELD)(&peaks, decay, &opened);
             nodes += 2 * GAUSS_PAIRS;
-            value = select(panel.integral, value, is_closed);
+            value = select(panel.integral, value, is_done);
             const floatv allowed = threshold * (integral + value);
             const intv is_unseen = panel.is_broken & (BEYOND_NODES * value > allowed);
             const intv is_rough = (panel.unresolved2 > allowed * allowed) | is_unseen;
-            if (cuts < MOST_CUTS && open < MOST_ENDS && any_lane(is_rough & !is_closed)) {
-                ends[open] = JOIN(FIELD, _split)(&peaks, from, end, panel.middle);
-                ++open;
+            if (cuts < MOST_CUTS && open + 2 <= MOST_PANELS && any_lane(is_rough & !is_done)) {
+                const floatv cut = JOIN(FIELD, _split)(&peaks, from, end, panel.middle);
+                all_from[open] = cut, all_to[open] = to;
+                all_from[open + 1] = from, all_to[open + 1] = min(cut, to);
+                open += 2;
                 ++cuts;
                 continue;
             }
         }
         integral += select(value, splat(0.0f), is_empty);
-        from = select(to, from, is_empty);
-        --open;
     }
 #ifdef COUNT_NODES
     return splat((float)nodes);

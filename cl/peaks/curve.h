@@ -165,23 +165,6 @@ INLINE floatv middle_cut(const curve_peaks *const peaks) {
     return select(between, equidistant(peaks, splat(-1.0f - path->vertex), splat(1.0f - path->vertex)), jumps);
 }
 
-// The ends of the panels, the last one first.
-INLINE uint curve_cuts(const curve_peaks *const peaks, floatv *const ends) {
-    const curve_path *const path = &peaks->path;
-    const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, 1.0f);
-    const floatv b = clamp(end_cut(path, peaks->beyond_last, 0.5f), 0.0f, 1.0f);
-    const floatv c = clamp(ends_cut(peaks, peaks->beyond_first, peaks->beyond_last), 0.0f, 1.0f);
-    const floatv d = clamp(middle_cut(peaks), 0.0f, 1.0f);
-    const floatv less_ab = min(a, b), more_ab = max(a, b), less_cd = min(c, d), more_cd = max(c, d);
-    const floatv inner = max(less_ab, less_cd), outer = min(more_ab, more_cd);
-    ends[0] = splat(1.0f);
-    ends[1] = max(more_ab, more_cd);
-    ends[2] = max(inner, outer);
-    ends[3] = min(inner, outer);
-    ends[4] = min(less_ab, less_cd);
-    return 5;
-}
-
 // A point of the ray and the parameter of the curve's point nearest to it. A call: it is asked for in many places, and
 // rarely.
 typedef struct {
@@ -209,16 +192,15 @@ INLINE intv end_is_nearest(const curve_path *const path, const floatv x, const i
     return is_nearest;
 }
 
-// The panels on which one end of the curve is the nearest point throughout, and their integrals.
-INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, const floatv from, const floatv to,
-                         floatv *const integral) {
+// Whether one end of the curve is the nearest point from all of a panel, and at which x it is.
+INLINE intv curve_is_closed(const curve_peaks *const peaks, const floatv from, const floatv to, floatv *const x) {
     const curve_path *const path = &peaks->path;
     const floatv middle = 0.5f * (from + to), inside = 1e-4f * (to - from);
     const intv is_first = linear_at(peaks->beyond_first, middle) <= 0.0f;
     const intv is_last = linear_at(peaks->beyond_last, middle) >= 0.0f;
     const intv are_both = is_first & is_last;
-    intv is_closed = is_first | is_last;
-    *integral = splat(0.0f);
+    const intv is_closed = (is_first | is_last) & (to > from);
+    *x = splat(0.0f);
     if (!any_lane(is_closed))
         return is_closed;
     intv is_last_nearer = is_last;
@@ -227,19 +209,70 @@ INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, cons
         const floatv to_first = curve_distance2(path, &point, splat(-0.5f));
         is_last_nearer &= !is_first | (curve_distance2(path, &point, splat(0.5f)) < to_first);
     }
-    const floatv x = select(splat(-0.5f), splat(0.5f), is_last_nearer);
-    is_closed &= end_is_nearest(path, x, are_both, from + inside) & end_is_nearest(path, x, are_both, to - inside);
-    if (!any_lane(is_closed))
-        return is_closed;
+    *x = select(splat(-0.5f), splat(0.5f), is_last_nearer);
+    return is_closed & end_is_nearest(path, *x, are_both, from + inside) &
+           end_is_nearest(path, *x, are_both, to - inside);
+}
+
+// The integral of a panel from all of which the end of the curve at x is the nearest point.
+INLINE floatv curve_closed_form(const curve_peaks *const peaks, const Decay decay, const floatv x, const floatv from,
+                                const floatv to) {
+    const curve_path *const path = &peaks->path;
     floatv least;
     const floatv nearest = closest_to_core(path, peaks->span2, x, &least);
     const floatv length = 0.5f * twice_sqrt(peaks->span2);
     const Quadratic to_end = {length, -length * nearest, least + path->softening2};
     // Lengths are doubled.
-    *integral = 2.0f * closed_form(&to_end, path->floor2, decay, from, to);
-    if (path->spline_count)
-        *integral *= curve_intensity(path, x);
+    const floatv integral = 2.0f * closed_form(&to_end, path->floor2, decay, from, to);
+    return path->spline_count ? integral * curve_intensity(path, x) : integral;
+}
+
+// The integral of the lanes for which a panel is closed.
+INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, const floatv from, const floatv to,
+                         floatv *const integral) {
+    floatv x;
+    const intv is_closed = curve_is_closed(peaks, from, to, &x);
+    *integral = splat(0.0f);
+    if (any_lane(is_closed))
+        *integral = select(splat(0.0f), curve_closed_form(peaks, decay, x, from, to), is_closed);
     return is_closed;
+}
+
+// Cuts the ray into panels, the last one first, and returns the integral of those that are closed: the parts that
+// belong to an end are one stretch of the ray. A lane that is done with a panel finds it empty.
+INLINE uint curve_panels(const curve_peaks *const peaks, const Decay decay, floatv *const from, floatv *const to,
+                         floatv *const integral) {
+    const curve_path *const path = &peaks->path;
+    const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, 1.0f);
+    const floatv b = clamp(end_cut(path, peaks->beyond_last, 0.5f), 0.0f, 1.0f);
+    const floatv c = clamp(ends_cut(peaks, peaks->beyond_first, peaks->beyond_last), 0.0f, 1.0f);
+    const floatv d = clamp(middle_cut(peaks), 0.0f, 1.0f);
+    const floatv less_ab = min(a, b), more_ab = max(a, b), less_cd = min(c, d), more_cd = max(c, d);
+    const floatv inner = max(less_ab, less_cd), outer = min(more_ab, more_cd);
+    to[0] = splat(1.0f);
+    to[1] = from[0] = max(more_ab, more_cd);
+    to[2] = from[1] = max(inner, outer);
+    to[3] = from[2] = min(inner, outer);
+    to[4] = from[3] = min(less_ab, less_cd);
+    from[4] = splat(0.0f);
+
+    floatv first_from = splat(1.0f), first_to = splat(0.0f), last_from = splat(1.0f), last_to = splat(0.0f);
+    for (uint k = 0; k < 5; ++k) {
+        if (!any_lane(to[k] > from[k]))
+            continue;
+        floatv x;
+        const intv is_closed = curve_is_closed(peaks, from[k], to[k], &x);
+        const intv is_first = is_closed & (x < 0.0f), is_last = is_closed & (x > 0.0f);
+        first_from = select(first_from, min(first_from, from[k]), is_first);
+        first_to = select(first_to, max(first_to, to[k]), is_first);
+        last_from = select(last_from, min(last_from, from[k]), is_last);
+        last_to = select(last_to, max(last_to, to[k]), is_last);
+        to[k] = select(to[k], from[k], is_closed);
+    }
+    const floatv of_first = curve_closed_form(peaks, decay, splat(-0.5f), first_from, max(first_to, first_from));
+    const floatv of_last = curve_closed_form(peaks, decay, splat(0.5f), last_from, max(last_to, last_from));
+    *integral = of_first + of_last;
+    return 5;
 }
 
 curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is_b) {

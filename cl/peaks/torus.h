@@ -48,11 +48,14 @@ INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const 
     return peaks;
 }
 
-// The ends of the panels, the last one first.
-uint torus_cuts(const torus_peaks *const peaks, floatv *const ends) {
+// Cuts the ray into panels, the last one first.
+INLINE uint torus_panels(const torus_peaks *const peaks, const Decay decay, floatv *const from, floatv *const to,
+                         floatv *const integral) {
     const Quadratic *const rho2 = &peaks->path.rho2;
-    ends[0] = splat(1.0f);
-    ends[1] = clamp(-rho2->offset * inverse(rho2->slope), 0.0f, 1.0f);
+    to[0] = splat(1.0f);
+    to[1] = from[0] = clamp(nearest_along(rho2), 0.0f, 1.0f);
+    from[1] = splat(0.0f);
+    *integral = splat(0.0f);
     return 2;
 }
 
