@@ -11,6 +11,7 @@ floatv inverse_cube_root(const floatv a) {
     const floatv guess = fma(to_floatv(as_intv(a)), splat(-1.0f / 3.0f), splat(1419967116.0f));
     const floatv third = a * (-1.0f / 3.0f);
     floatv y = as_floatv(to_intv_down(guess));
+#pragma unroll
     for (int step = 0; step < CUBE_ROOT_STEPS; ++step)
         y = y * fma(third * y, y * y, splat(4.0f / 3.0f));
     return y;

@@ -20,7 +20,7 @@ pub struct Rule {
 const RULES: [(f64, Rule); 5] = [
     (1e-1, rule(4, 1.0, 1e-1)),
     (1e-2, rule(6, 1.0, 5e-3)),
-    (1e-3, rule(8, 1e-2, 5e-4)),
+    (1e-3, rule(8, 1e-2, 1e-3)),
     (1e-4, rule(10, 1e-3, 1e-4)),
     (0.0, rule(10, 5e-5, 1e-5)),
 ];
