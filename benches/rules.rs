@@ -14,8 +14,8 @@ use random::{Kind, scene_of};
 const SCENES: u64 = 40;
 const SIZE: u32 = 48;
 const NODES: [u32; 4] = [4, 6, 8, 10];
-const THRESHOLDS: [f32; 7] = [
-    1.0, 3e-2, 1e-2, 1e-3, 1e-4, 3e-5, 1e-5,
+const THRESHOLDS: [f32; 10] = [
+    1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6,
 ];
 
 fn renderer(rule: Rule, extra: &str) -> Renderer {
@@ -57,7 +57,7 @@ fn nodes(rule: Rule, scenes: &[(Scene, RadianceImage)]) -> f64 {
 }
 
 fn main() {
-    for kind in [Kind::Torus] {
+    for kind in [Kind::Torus, Kind::Curve] {
         let scenes: Vec<_> = (0..SCENES)
             .map(|seed| {
                 let scene = scene_of(kind, seed, SIZE);
@@ -71,7 +71,6 @@ fn main() {
             for threshold in THRESHOLDS {
                 let rule = Rule {
                     nodes: nodes_of_panel,
-                    coarse: false,
                     torus_threshold: threshold,
                     curve_threshold: threshold,
                 };

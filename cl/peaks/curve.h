@@ -178,15 +178,26 @@ curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
     return sight;
 }
 
+// Whether there may be a nearest point of its part between the ends, given that the end at x is one and the other is
+// not: beyond a turning point +-sqrt(-p) of the cubic that lies on the curve, the one on the far side from x.
+INLINE intv may_be_between(const curve_path *const path, const curve_point *const point, const floatv x) {
+    const float first = path->vertex - 0.5f, last = path->vertex + 0.5f;
+    const floatv near_end = select(splat(-last), splat(first), x < 0.0f);
+    const floatv far_end = select(splat(-first), splat(last), x < 0.0f);
+    const floatv turning2 = -point->p;
+    return has_three_roots(point->p, point->h) & (far_end > 0.0f) & (turning2 < far_end * far_end) &
+           ((near_end < 0.0f) | (turning2 > near_end * near_end));
+}
+
 // Whether an end of the curve, at x, is the nearest point from all of a panel. The points nearest to an end form a
 // convex set: both ends of the panel tell. Where the other end is a nearest point of its part too, only that one
-// competes; else the curve between them does where the cubic has three roots.
+// competes.
 INLINE intv end_is_nearest(const curve_path *const path, const floatv x, const intv are_both, const floatv s) {
     const curve_point point = curve_point_at(path, s);
     intv is_nearest = x == x;
     if (any_lane(are_both))
         is_nearest = !are_both | (curve_distance2(path, &point, x) <= curve_distance2(path, &point, -x));
-    const intv is_open = !are_both & (path->is_straight ? x == x : has_three_roots(point.p, point.h));
+    const intv is_open = !are_both & (path->is_straight ? x == x : may_be_between(path, &point, x));
     if (any_lane(is_open))
         is_nearest &= !is_open | (curve_seen_from(path, s).x == x);
     return is_nearest;
@@ -280,13 +291,15 @@ curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is
     return sight;
 }
 
-// Whether the nearest point jumps between an end of a panel and the outermost node, unseen by all others: with a local
-// intensity the field jumps there.
+// Whether the nearest point jumps between an end of a panel and the outermost node, unseen by all others: the
+// field has a kink there, which counts when tolerances are tight, and with a local intensity a jump.
 INLINE intv curve_is_broken(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv first,
                             const floatv last) {
     const curve_path *const path = &peaks->path;
+#ifdef COARSE
     if (!path->spline_count)
         return from > to;
+#endif
     const floatv inside = 1e-4f * (to - from);
     const floatv begin = curve_seen_from(path, from + inside).x - curve_seen_from(path, first).x;
     const floatv end = curve_seen_from(path, to - inside).x - curve_seen_from(path, last).x;
@@ -405,12 +418,29 @@ INLINE void curve_look_ahead(curve_near *const near, const floatv *const left, c
     near->counts.three = any_lane(has_three);
 }
 
+// A nearest point between the ends, improved by a Newton step on the derivative of the distance: close to the core,
+// from where it is seen, that has more digits than the cubic.
+INLINE floatv polished(const curve_path *const path, const curve_point *const point, const floatv x) {
+    const curve_offset offset = offset_from_curve(path, point, x);
+    const floatv velocity_across = curve_velocity_across(path, x);
+    const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
+    const floatv facing = max(fma(-2.0f * path->bend, offset.across, speed2), max(0.1f * speed2, 1e-30f));
+    const floatv behind = fma(offset.along, path->velocity_along, offset.across * velocity_across);
+    return select(x, clamp(fma(behind, inverse(facing), x), -0.5f, 0.5f), fabs(x) < 0.5f);
+}
+
 // The field at s = base + x.
 INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
     curve_point point = curve_point_at(&near->path, x);
     point.core = near->core;
     floatv distance2;
+#ifdef COARSE
     const floatv nearest = nearest_of_roots(&near->path, &point, near->counts, &distance2);
+#else
+    const floatv root = nearest_of_roots(&near->path, &point, near->counts, &distance2);
+    const floatv nearest = polished(&near->path, &point, root);
+    distance2 = min(distance2, curve_distance2(&near->path, &point, nearest));
+#endif
     const floatv field = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, 0.5f * near->path.floor2));
     return near->path.spline_count ? field * curve_intensity(&near->path, nearest) : field;
 }
