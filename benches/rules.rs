@@ -71,6 +71,7 @@ fn main() {
             for threshold in THRESHOLDS {
                 let rule = Rule {
                     nodes: nodes_of_panel,
+                    coarse: false,
                     torus_threshold: threshold,
                     curve_threshold: threshold,
                 };

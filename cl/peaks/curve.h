@@ -189,40 +189,41 @@ INLINE intv may_be_between(const curve_path *const path, const curve_point *cons
            ((near_end < 0.0f) | (turning2 > near_end * near_end));
 }
 
-// Whether an end of the curve, at x, is the nearest point from all of a panel. The points nearest to an end form a
-// convex set: both ends of the panel tell. Where the other end is a nearest point of its part too, only that one
-// competes.
-INLINE intv end_is_nearest(const curve_path *const path, const floatv x, const intv are_both, const floatv s) {
+// Whether the end of the curve at x is its point nearest to a point of the ray. Where the other end is a nearest point
+// of its part too, only that one competes.
+INLINE intv end_is_nearest(const curve_peaks *const peaks, const floatv x, const floatv s) {
+    const curve_path *const path = &peaks->path;
     const curve_point point = curve_point_at(path, s);
-    intv is_nearest = x == x;
+    const intv is_first = linear_at(peaks->beyond_first, s) <= 0.0f, is_last = linear_at(peaks->beyond_last, s) >= 0.0f;
+    const intv are_both = is_first & is_last;
+    intv is_nearest = select(is_last, is_first, x < 0.0f);
     if (any_lane(are_both))
-        is_nearest = !are_both | (curve_distance2(path, &point, x) <= curve_distance2(path, &point, -x));
-    const intv is_open = !are_both & (path->is_straight ? x == x : may_be_between(path, &point, x));
+        is_nearest &= !are_both | (curve_distance2(path, &point, x) <= curve_distance2(path, &point, -x));
+    const intv is_open = is_nearest & !are_both & (path->is_straight ? x == x : may_be_between(path, &point, x));
     if (any_lane(is_open))
         is_nearest &= !is_open | (curve_seen_from(path, s).x == x);
     return is_nearest;
 }
 
-// Whether one end of the curve is the nearest point from all of a panel, and at which x it is.
+// Whether one end of the curve is the nearest point from all of a panel, and at which x it is: the points nearest to an
+// end form a convex set, so both ends of the panel tell.
 INLINE intv curve_is_closed(const curve_peaks *const peaks, const floatv from, const floatv to, floatv *const x) {
     const curve_path *const path = &peaks->path;
     const floatv middle = 0.5f * (from + to), inside = 1e-4f * (to - from);
     const intv is_first = linear_at(peaks->beyond_first, middle) <= 0.0f;
     const intv is_last = linear_at(peaks->beyond_last, middle) >= 0.0f;
-    const intv are_both = is_first & is_last;
     const intv is_closed = (is_first | is_last) & (to > from);
     *x = splat(0.0f);
     if (!any_lane(is_closed))
         return is_closed;
     intv is_last_nearer = is_last;
-    if (any_lane(are_both)) {
+    if (any_lane(is_first & is_last)) {
         const curve_point point = curve_point_at(path, middle);
         const floatv to_first = curve_distance2(path, &point, splat(-0.5f));
         is_last_nearer &= !is_first | (curve_distance2(path, &point, splat(0.5f)) < to_first);
     }
     *x = select(splat(-0.5f), splat(0.5f), is_last_nearer);
-    return is_closed & end_is_nearest(path, *x, are_both, from + inside) &
-           end_is_nearest(path, *x, are_both, to - inside);
+    return is_closed & end_is_nearest(peaks, *x, from + inside) & end_is_nearest(peaks, *x, to - inside);
 }
 
 // The integral of a panel from all of which the end of the curve at x is the nearest point.
@@ -279,6 +280,12 @@ INLINE uint curve_panels(const curve_peaks *const peaks, const Decay decay, floa
         last_from = select(last_from, min(last_from, from[k]), is_last);
         last_to = select(last_to, max(last_to, to[k]), is_last);
         to[k] = select(to[k], from[k], is_closed);
+    }
+    // What lies between is closed too, whatever rounding said of it.
+    for (uint k = 0; k < 5; ++k) {
+        const intv in_first = (from[k] >= first_from) & (to[k] <= first_to);
+        const intv in_last = (from[k] >= last_from) & (to[k] <= last_to);
+        to[k] = select(to[k], from[k], in_first | in_last);
     }
     const floatv of_first = curve_closed_form(peaks, decay, splat(-0.5f), first_from, max(first_to, first_from));
     const floatv of_last = curve_closed_form(peaks, decay, splat(0.5f), last_from, max(last_to, last_from));
