@@ -14,9 +14,7 @@ use random::{Kind, scene_of};
 const SCENES: u64 = 40;
 const SIZE: u32 = 48;
 const NODES: [u32; 4] = [4, 6, 8, 10];
-const THRESHOLDS: [f32; 10] = [
-    1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6,
-];
+const THRESHOLDS: [f32; 10] = [1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6];
 
 fn renderer(rule: Rule, extra: &str) -> Renderer {
     let choice = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned());
@@ -50,7 +48,12 @@ fn nodes(rule: Rule, scenes: &[(Scene, RadianceImage)]) -> f64 {
         let mut scene = scene.clone();
         energywave::bench::count_instead_of_light(&mut scene);
         let image = renderer.render(&scene).unwrap();
-        let sum: f64 = image.as_slice().iter().step_by(4).map(|n| f64::from(*n)).sum();
+        let sum: f64 = image
+            .as_slice()
+            .iter()
+            .step_by(4)
+            .map(|n| f64::from(*n))
+            .sum();
         sum / scene.image.pixels() as f64
     });
     counts.sum::<f64>() / scenes.len() as f64

@@ -3,18 +3,20 @@
 
 mod common;
 
-use common::{LANE_WIDTHS, full_scene};
+use common::{ALL_KINDS, LANE_WIDTHS, full_scene};
 use energywave::opencl::{DeviceBuffer, Program};
-use energywave::pack::{self, Sources, layout};
+use energywave::pack::{self, Rule, Sources, layout};
 use energywave::ray::ViewPlane;
+use energywave::scene::Integration;
 
 /// Renders straight into a buffer with 64 marked pixels behind the image; how many marks are left.
-fn marks_left(lanes: u32, extra: &str, width: u32, height: u32) -> usize {
+fn marks_left(lanes: u32, method: &str, extra: &str, width: u32, height: u32) -> usize {
     const MARKS: usize = 64;
     const MARK: [f32; 4] = [-1.0, -2.0, -3.0, -4.0];
     let scene = full_scene(width, height);
     let compute = common::compute();
-    let program = Program::build(&compute, &["render.cl"], &common::options(lanes, extra)).unwrap();
+    let options = common::options(lanes, &format!("{ALL_KINDS} {method} {extra}"));
+    let program = Program::build(&compute, &["render.cl"], &options).unwrap();
     let plane = ViewPlane::new(&scene.camera, scene.image);
     let packed = Sources::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
     let nodes = pack::nodes(20, scene.decay);
@@ -36,7 +38,7 @@ fn marks_left(lanes: u32, extra: &str, width: u32, height: u32) -> usize {
     }
     let pixels = scene.image.pixels();
     let output = upload(&compute, &vec![MARK; pixels + MARKS]);
-    let view = pack::view(&plane, width, 0.0);
+    let view = pack::view(&plane, &scene);
     program
         .run(
             &compute,
@@ -71,18 +73,21 @@ fn marks_left(lanes: u32, extra: &str, width: u32, height: u32) -> usize {
 
 #[test]
 fn nothing_is_written_behind_the_image() {
+    let exact = Rule::of(&Integration::default()).definitions();
     for lanes in LANE_WIDTHS {
-        for (width, height) in [(1, 1), (13, 7), (16, 4), (31, 1)] {
-            assert_eq!(
-                marks_left(lanes, "", width, height),
-                64,
-                "{lanes} lanes, {width}x{height}"
-            );
+        for method in ["", &exact] {
+            for (width, height) in [(1, 1), (13, 7), (16, 4), (31, 1)] {
+                assert_eq!(
+                    marks_left(lanes, method, "", width, height),
+                    64,
+                    "{lanes} lanes, {width}x{height}"
+                );
+            }
         }
     }
 }
 
 #[test]
 fn a_store_of_all_lanes_is_noticed_behind_the_image() {
-    assert_eq!(marks_left(8, "-DLAST_LANES(left)=8u", 13, 7), 64 - 5);
+    assert_eq!(marks_left(8, "", "-DLAST_LANES(left)=8u", 13, 7), 64 - 5);
 }

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{LANE_WIDTHS, difference, empty_scene, full_scene, renderer};
-use energywave::scene::{ImageSize, Measure};
+use energywave::scene::{ImageSize, Measure, Method};
 use energywave::{Scene, reference};
 
 /// Worst pixel of a device's Simpson image against float64: a sample that falls next to a core has a distance of few
@@ -55,6 +55,7 @@ fn figures() -> Vec<(String, Scene)> {
                 width: 96,
                 height: 96,
             };
+            scene.integration.method = Method::Simpson;
             figures.push((
                 path.file_stem().unwrap().to_str().unwrap().to_owned(),
                 scene,

@@ -4,6 +4,7 @@
 
 mod common;
 
+use energywave::scene::Method;
 use energywave::verify::{KnownRay, built_in_rays};
 
 #[test]
@@ -19,9 +20,12 @@ fn every_kernel_runs_on_every_lane_width() {
         .collect();
     for lanes in common::LANE_WIDTHS {
         let mut renderer = common::renderer(lanes, "");
-        let image = renderer.render(&scene).unwrap();
-        assert!(image.as_slice().iter().all(|value| value.is_finite()));
-        let traced = renderer.trace(&scene, &rays).unwrap();
-        assert!(traced.iter().flatten().all(|value| value.is_finite()));
+        for method in [Method::Simpson, Method::Exact] {
+            scene.integration.method = method;
+            let image = renderer.render(&scene).unwrap();
+            assert!(image.as_slice().iter().all(|value| value.is_finite()));
+            let traced = renderer.trace(&scene, &rays).unwrap();
+            assert!(traced.iter().flatten().all(|value| value.is_finite()));
+        }
     }
 }

@@ -8,13 +8,13 @@
 
 // Panels that may be open at once, cuts of a ray's panels in all, and the length in s below which a panel is left to
 // the next one.
-#ifndef MOST_PANELS
-#define MOST_PANELS 24
+#ifndef MOST_CUTS
 #define MOST_CUTS 64
+#endif
+#define MOST_PANELS 24
 #define SHORTEST_PANEL 1e-7f
 #define BEYOND_NODES 0.03f
 #define LN_2 0.693147181f
-#endif
 
 typedef struct {
     JOIN(FIELD, _near) near;

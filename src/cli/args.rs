@@ -105,10 +105,10 @@ pub struct Overrides {
     /// The quadrature
     #[arg(long, requires = "scene")]
     pub method: Option<MethodName>,
-    /// Divisions of the Simpson rule, even, 2 to 65536
+    /// Divisions of the Simpson rule, even, 2 to 65536; chooses --method simpson
     #[arg(long, value_parser = divisions, allow_hyphen_values = true, requires = "scene")]
     pub divisions: Option<u32>,
-    /// Relative error aimed at by the exact method
+    /// Relative error aimed at by the exact method; chooses --method exact
     #[arg(long, value_parser = tolerance, allow_hyphen_values = true, requires = "scene")]
     pub tolerance: Option<f64>,
 }
@@ -153,6 +153,9 @@ impl Overrides {
         integration.method = match self.method {
             Some(MethodName::Simpson) => Method::Simpson,
             Some(MethodName::Exact) => Method::Exact,
+            // Who names divisions wants them; who names a tolerance wants that met.
+            None if self.divisions.is_some() && self.tolerance.is_none() => Method::Simpson,
+            None if self.tolerance.is_some() && self.divisions.is_none() => Method::Exact,
             None => integration.method,
         };
         Ok(())

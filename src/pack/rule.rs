@@ -102,10 +102,7 @@ fn legendre(degree: usize, x: f64) -> (f64, f64) {
         let next = ((2.0 * k + 1.0) * x * value - k * before) / (k + 1.0);
         (before, value) = (value, next);
     }
-    (
-        value,
-        degree as f64 * (x * value - before) / (x * x - 1.0),
-    )
+    (value, degree as f64 * (x * value - before) / (x * x - 1.0))
 }
 
 #[cfg(test)]

@@ -173,7 +173,7 @@ pub struct Integration {
 impl Default for Integration {
     fn default() -> Self {
         Self {
-            method: Method::Simpson,
+            method: Method::Exact,
             divisions: 200,
             tolerance: 1e-3,
             measure: Measure::Parameter,

@@ -7,7 +7,7 @@ pub mod random;
 
 use energywave::image::{Difference, compare};
 use energywave::opencl::{Compute, OpenClDevice, discover};
-use energywave::scene::{Camera, Curve, Cylinder, Decay, ImageSize, Sphere, Torus};
+use energywave::scene::{Camera, Curve, Cylinder, Decay, ImageSize, Method, Sphere, Torus};
 use energywave::{BuildOptions, Device, DeviceType, RadianceImage, Renderer, Scene};
 use glam::DVec3;
 
@@ -39,6 +39,9 @@ pub fn compute() -> Compute {
     Compute::new(device).unwrap()
 }
 
+/// What the kernels need to hold every kind of source.
+pub const ALL_KINDS: &str = "-D SPHERES -D CYLINDERS -D TORI -D CURVES";
+
 pub fn options(lanes: u32, extra: &str) -> BuildOptions {
     BuildOptions {
         lanes: Some(lanes),
@@ -55,6 +58,7 @@ pub fn renderer(lanes: u32, extra: &str) -> Renderer {
 pub fn empty_scene(width: u32, height: u32) -> Scene {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.3, -3.5, 2.0), DVec3::ZERO));
     scene.image = ImageSize { width, height };
+    scene.integration.method = Method::Simpson;
     scene.decay = Some(Decay {
         alpha: 0.1,
         beta: 0.1,
