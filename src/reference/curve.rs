@@ -83,6 +83,60 @@ impl CurveField {
             breaks.push((self.at(t) - ray.origin).dot(tangent) / ray.span.dot(tangent));
         }
         breaks.retain(|s| s.is_finite());
+        let jumps = self.jumps(ray, breaks);
+        breaks.extend(jumps);
+    }
+
+    /// Where along the ray the nearest point jumps: looked for between all breaks, closely beside each, where no node of a
+    /// quadrature would see it.
+    fn jumps(&self, ray: &Ray, breaks: &[f64]) -> Vec<f64> {
+        const SHARES: [f64; 13] = [
+            1e-8,
+            1e-6,
+            1e-4,
+            1e-2,
+            0.1,
+            0.3,
+            0.5,
+            0.7,
+            0.9,
+            1.0 - 1e-2,
+            1.0 - 1e-4,
+            1.0 - 1e-6,
+            1.0 - 1e-8,
+        ];
+        let mut ends: Vec<f64> = breaks.iter().map(|s| s.clamp(0.0, 1.0)).collect();
+        ends.extend([0.0, 1.0]);
+        ends.sort_by(f64::total_cmp);
+        let pieces = ends.windows(2).filter(|pair| pair[1] > pair[0]);
+        let samples: Vec<f64> = pieces
+            .flat_map(|pair| SHARES.map(|share| pair[0] + share * (pair[1] - pair[0])))
+            .collect();
+        let nearest = |s: f64| self.nearest(ray.at(s)).0;
+        let mut jumps = Vec::new();
+        let mut before = nearest(0.0);
+        for pair in samples.windows(2) {
+            let (mut from, mut to) = (pair[0], pair[1]);
+            let (mut t_from, mut t_to) = (before, nearest(to));
+            before = t_to;
+            // A smooth change halves with the stretch it happens on; a jump stays.
+            for _ in 0..50 {
+                if (t_to - t_from).abs() < 1e-3 {
+                    break;
+                }
+                let middle = 0.5 * (from + to);
+                let t = nearest(middle);
+                if (t - t_from).abs() < (t - t_to).abs() {
+                    (from, t_from) = (middle, t);
+                } else {
+                    (to, t_to) = (middle, t);
+                }
+            }
+            if (t_to - t_from).abs() >= 1e-3 {
+                jumps.push(0.5 * (from + to));
+            }
+        }
+        jumps
     }
 }
 
