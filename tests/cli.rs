@@ -263,7 +263,7 @@ fn verify_prints_a_row_for_every_ray_and_fails_on_a_wrong_one() {
     let rows: Vec<Value> = serde_json::from_slice(&spoiled.stdout).unwrap();
     assert_eq!(
         rows.len(),
-        3,
+        6,
         "the rows are printed before the program fails"
     );
     expect(

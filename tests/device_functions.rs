@@ -16,6 +16,9 @@ const FUNCTIONS: &str = include_str!("cl/functions.cl");
 /// Four Newton steps leave a few roundings of float32.
 const CUBE_ROOT_ERROR: f64 = 5e-7;
 
+/// The minimax polynomials' own errors, below 1e-7, and the rounding of their terms.
+const ELEMENTARY_ERROR: f64 = 2.5e-7;
+
 /// The minimax polynomial's own error, 1.6e-7, and the rounding of its terms.
 const THIRD_ERROR: f64 = 4e-7;
 
@@ -94,6 +97,29 @@ fn the_inverse_cube_root_is_within_a_few_roundings() {
         spoiled > CUBE_ROOT_ERROR,
         "the spoiled build passed: {spoiled:e}"
     );
+}
+
+#[test]
+fn powers_of_two_and_logarithms_are_within_a_few_roundings() {
+    let powers: Vec<f32> = (0..1600).map(|i| i as f32 * 0.15 - 119.9).collect();
+    let values: Vec<f32> = powers.iter().map(|x| x.exp2()).collect();
+    for lanes in LANE_WIDTHS {
+        let bench = Bench::new(lanes, "");
+        let found = &bench.run("powers", &[&powers], powers.len(), 1)[0];
+        for (x, value) in powers.iter().zip(found) {
+            let error = (f64::from(*value) / f64::from(*x).exp2() - 1.0).abs();
+            assert!(error < ELEMENTARY_ERROR, "{lanes} lanes, 2^{x}: {error:e}");
+        }
+        let found = &bench.run("logarithms", &[&values], values.len(), 1)[0];
+        for (x, value) in values.iter().zip(found) {
+            let expected = f64::from(*x).log2();
+            let error = (f64::from(*value) - expected).abs() / expected.abs().max(1.0);
+            assert!(
+                error < ELEMENTARY_ERROR,
+                "{lanes} lanes, log {x:e}: {error:e}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod common;
 use common::{LANE_WIDTHS, difference, empty_scene, full_scene, renderer};
 use energywave::scene::{ImageSize, Measure, Method};
 use energywave::{Scene, reference};
+use glam::DVec3;
 
 /// Worst pixel of a device's Simpson image against float64: a sample that falls next to a core has a distance of few
 /// float32 digits, and outweighs the ray's other samples.
@@ -227,6 +228,8 @@ fn any_number_of_divisions_works() {
     let mut renderer = renderer(common::device().lanes, "");
     for divisions in [2, 4, 200, 254, 256, 258, 1024, 65536] {
         let mut scene = full_scene(5, 3);
+        // The middle ray must not pass through the origin, where two curves end: so many samples find the core there.
+        scene.camera.target = DVec3::new(0.05, 0.02, 0.03);
         scene.integration.divisions = divisions;
         let image = renderer.render(&scene).unwrap();
         let found = difference(&image, &reference::render_simpson(&scene).unwrap());

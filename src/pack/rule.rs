@@ -20,8 +20,8 @@ pub struct Rule {
 const RULES: [(f64, Rule); 5] = [
     (1e-1, rule(4, 1.0, 1e-1)),
     (1e-2, rule(6, 1.0, 5e-3)),
-    (1e-3, rule(8, 1e-2, 4e-4)),
-    (1e-4, rule(10, 2e-4, 3e-5)),
+    (1e-3, rule(8, 1e-2, 5e-4)),
+    (1e-4, rule(10, 2e-4, 2e-5)),
     (0.0, rule(10, 3e-5, 5e-6)),
 ];
 

@@ -13,6 +13,14 @@ __kernel void cube_root(__global const float *a, __global float *result) {
     STORE(inverse_cube_root(LOAD(a)), result);
 }
 
+__kernel void powers(__global const float *x, __global float *result) {
+    STORE(power_of_two(LOAD(x)), result);
+}
+
+__kernel void logarithms(__global const float *x, __global float *result) {
+    STORE(binary_logarithm(LOAD(x)), result);
+}
+
 __kernel void third(__global const float *x, __global float *result) {
     STORE(cosine_of_third(LOAD(x)), result);
 }
@@ -41,8 +49,9 @@ __kernel void spline(__global const SplinePiece *pieces, __global const float *c
                                   __global const float *dz, __global const float *ss, __global float *result) {        \
         Sources sources = {0, 0, 0, 0, 0};                                                                             \
         sources.list = first;                                                                                          \
-        const float3v origin = {LOAD(ox), LOAD(oy), LOAD(oz)}, span = {LOAD(dx), LOAD(dy), LOAD(dz)};                  \
-        const Ray ray = make_ray(origin, span, 0.0f);                                                                  \
+        const fine3v origin = {to_finev(LOAD(ox)), to_finev(LOAD(oy)), to_finev(LOAD(oz))};                            \
+        const fine3v span = {to_finev(LOAD(dx)), to_finev(LOAD(dy)), to_finev(LOAD(dz))};                              \
+        const Ray ray = make_ray(origin, span, splat(1.0f), length3(from_fine3(span)), 0.0f);                          \
         const kind##_path path = kind##_along(&ray, &sources, 0);                                                      \
         STORE(1.0f / kind##_field(&path, LOAD(ss)), result);                                                           \
     }
