@@ -82,6 +82,7 @@ impl Plain {
         let options = BuildOptions {
             lanes: Some(1),
             extra: format!("-DIS_TORUS={}", u8::from(table == Table::Torus)),
+            ..BuildOptions::default()
         };
         let text = include_str!("plain.cl");
         let program = Program::build_text(&compute, "benches/plain.cl", text, &options).unwrap();
@@ -103,7 +104,7 @@ impl Plain {
         let mut render = |frame: u32, image: &mut [[f32; 4]]| {
             let scene = turned(scene, frame);
             let plane = ViewPlane::new(&scene.camera, scene.image);
-            let view = pack::view(&plane, scene.image.width, 0.0);
+            let view = pack::view(&plane, &scene);
             source
                 .write(&self.compute, &parameters(&scene, plane.eye))
                 .unwrap();

@@ -6,8 +6,10 @@ use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec3};
 
+use crate::device::Device;
 use crate::error::{Error, Result};
-use crate::image::RadianceImage;
+use crate::image::{Difference, RadianceImage, compare};
+use crate::opencl::BuildOptions;
 use crate::renderer::{FrameCost, Renderer};
 use crate::scene::{Camera, Curve, Decay, ImageSize, Measure, Method, Scene, Torus};
 
@@ -172,6 +174,75 @@ pub fn measure(renderer: &mut Renderer, scene: &Scene, time: Duration) -> Result
         frame: last as u32,
         image,
     })
+}
+
+/// Nodes that a frame of the method `exact` takes, by kernels that count instead of adding light; closed forms take none.
+/// A ray counts the nodes of all rays that are side by side with it in one vector.
+///
+/// # Errors
+/// As [`Renderer::render`].
+pub fn count_field_evaluations(device: &Device, scene: &Scene) -> Result<u64> {
+    let options = BuildOptions {
+        extra: "-D COUNT_NODES".to_owned(),
+        ..BuildOptions::default()
+    };
+    let mut scene = scene.clone();
+    count_instead_of_light(&mut scene);
+    let image = Renderer::with_options(device, &options)?.render(&scene)?;
+    let counts = image.as_slice().iter().step_by(4);
+    Ok(counts.map(|count| f64::from(*count)).sum::<f64>() as u64)
+}
+
+/// A way to integrate, how far it is from the truth, and how fast.
+#[derive(Debug, Clone)]
+pub struct Accuracy {
+    /// The method.
+    pub method: Method,
+    /// Simpson: divisions.
+    pub divisions: Option<u32>,
+    /// Exact: tolerance.
+    pub tolerance: Option<f64>,
+    /// Relative difference from the float64 reference, linear radiance.
+    pub difference: Difference,
+    /// Frames a second, as [`measure`] has them.
+    pub fps: f64,
+}
+
+/// Simpson's rule with 64, 128, 200, 256 and 1024 divisions and the method `exact` at 1e-2, 1e-3 and 1e-4 beside `truth`,
+/// the scene's image by [`crate::reference::render`].
+///
+/// # Errors
+/// As [`Renderer::render`].
+pub fn accuracies(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    truth: &RadianceImage,
+    time: Duration,
+) -> Result<Vec<Accuracy>> {
+    let simpson = [64, 128, 200, 256, 1024].map(|divisions| (Some(divisions), None));
+    let exact = [1e-2, 1e-3, 1e-4].map(|tolerance| (None, Some(tolerance)));
+    let mut rows = Vec::new();
+    for (divisions, tolerance) in simpson.into_iter().chain(exact) {
+        let mut scene = scene.clone();
+        let integration = &mut scene.integration;
+        integration.divisions = divisions.unwrap_or(integration.divisions);
+        integration.tolerance = tolerance.unwrap_or(integration.tolerance);
+        integration.method = match divisions {
+            Some(_) => Method::Simpson,
+            None => Method::Exact,
+        };
+        let image = renderer.render(&scene)?;
+        let difference = compare(&image, truth)
+            .ok_or_else(|| Error::Unsupported("the truth has another size".to_owned()))?;
+        rows.push(Accuracy {
+            method: scene.integration.method,
+            divisions,
+            tolerance,
+            difference,
+            fps: measure(renderer, &scene, time)?.fps,
+        });
+    }
+    Ok(rows)
 }
 
 /// Makes a scene show, built with the option `-D COUNT_NODES`, how many nodes each pixel takes: every source counts once.

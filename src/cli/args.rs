@@ -25,6 +25,8 @@ pub enum Command {
     Devices(DevicesArguments),
     /// Measure the paper's speed tables, or a scene
     Bench(BenchArguments),
+    /// Compare the methods on a scene: error against float64, and frames a second
+    Compare(CompareArguments),
     /// Check a device against rays whose integrals are known
     Verify(VerifyArguments),
 }
@@ -85,6 +87,26 @@ pub struct BenchArguments {
     pub seconds: f64,
     #[command(flatten)]
     pub overrides: Overrides,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Scene file, TOML or JSON
+    pub scene: PathBuf,
+    /// Size of the images in pixels, such as 128x128 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
+    pub size: Option<ImageSize>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Time of each measurement of speed
+    #[arg(long, default_value_t = 0.5, value_parser = seconds)]
+    pub seconds: f64,
+    /// No progress bar
+    #[arg(long, short)]
+    pub quiet: bool,
     #[command(flatten)]
     pub device: DeviceArgument,
 }

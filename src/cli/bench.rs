@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use energywave::bench::{DIVISIONS, RESOLUTIONS, Speed, Table, measure};
+use energywave::bench::{
+    DIVISIONS, RESOLUTIONS, Speed, Table, count_field_evaluations, measure, turned,
+};
 use energywave::image::Output;
 use energywave::scene::Method;
 use energywave::{Device, Error, Renderer, Scene};
@@ -133,7 +135,10 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
         fps: speed.fps,
         kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
         evaluations: speed.cost.evaluations,
-        field_evaluations: speed.cost.field_evaluations,
+        field_evaluations: match scene.integration.method {
+            Method::Simpson => speed.cost.field_evaluations,
+            Method::Exact => count_field_evaluations(&device, &turned(&scene, speed.frame))?,
+        },
         frame: speed.frame,
         device: device.name,
     };

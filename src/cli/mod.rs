@@ -2,6 +2,7 @@
 
 mod args;
 mod bench;
+mod compare;
 mod devices;
 mod progress;
 mod render;
@@ -40,6 +41,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
     };
     let Err(failure) = outcome else {

@@ -1,0 +1,84 @@
+//! `energywave compare`: how far each way to integrate is from the truth on a scene, and how fast it is.
+
+use std::time::Duration;
+
+use energywave::bench::{Accuracy, accuracies};
+use energywave::scene::Method;
+use energywave::{Device, Renderer, Scene};
+use serde::Serialize;
+
+use super::args::CompareArguments;
+use super::progress::{Progress, catch_interrupts};
+use super::{Outcome, choose_device, note, print, print_json};
+
+#[derive(Serialize)]
+struct Row {
+    method: Method,
+    divisions: Option<u32>,
+    tolerance: Option<f64>,
+    max: f64,
+    worst: (u32, u32),
+    p999: f64,
+    rms: f64,
+    fps: f64,
+}
+
+impl From<Accuracy> for Row {
+    fn from(accuracy: Accuracy) -> Self {
+        Self {
+            method: accuracy.method,
+            divisions: accuracy.divisions,
+            tolerance: accuracy.tolerance,
+            max: accuracy.difference.max,
+            worst: accuracy.difference.worst,
+            p999: accuracy.difference.p999,
+            rms: accuracy.difference.rms,
+            fps: accuracy.fps,
+        }
+    }
+}
+
+pub fn run(arguments: &CompareArguments) -> Outcome {
+    let mut scene = Scene::from_file(&arguments.scene)?;
+    scene.image = arguments.size.unwrap_or(scene.image);
+    scene.validate()?;
+    let device = choose_device(arguments.device.device.as_deref())?;
+    let mut renderer = Renderer::new(&device)?;
+    catch_interrupts();
+    note("the truth is computed in float64 first; --size makes it quicker");
+    let mut exact = scene.clone();
+    exact.integration.method = Method::Exact;
+    let mut progress = Progress::new(arguments.quiet);
+    let mut reference = Renderer::new(&Device::select("reference")?)?;
+    let truth = reference.render_with_progress(&exact, &mut |share| progress.report(share))?;
+    drop(progress);
+    let time = Duration::from_secs_f64(arguments.seconds);
+    let rows: Vec<Row> = accuracies(&mut renderer, &scene, &truth, time)?
+        .into_iter()
+        .map(Row::from)
+        .collect();
+    if arguments.json {
+        return print_json(&rows);
+    }
+    print(&table(&rows))
+}
+
+/// Relative errors of the pixels against the reference, and frames a second.
+fn table(rows: &[Row]) -> String {
+    let mut text = format!(
+        "{:<14} {:>9} {:>9} {:>9} {:>9}\n",
+        "", "max", "99.9 %", "rms", "fps"
+    );
+    for row in rows {
+        let name = match (row.divisions, row.tolerance) {
+            (Some(divisions), _) => format!("simpson {divisions}"),
+            (_, Some(tolerance)) => format!("exact {tolerance:.0e}"),
+            _ => String::new(),
+        };
+        text += &format!(
+            "{name:<14} {:>9.1e} {:>9.1e} {:>9.1e} {:>9.1}\n",
+            row.max, row.p999, row.rms, row.fps
+        );
+    }
+    text
+}
