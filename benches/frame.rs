@@ -1,4 +1,4 @@
-//! Criterion benches: a frame by resolution and divisions, by kind and number of sources; packing; reading back against
+//! Criterion benches: a frame by resolution and divisions, by kind and number of sources; the exact method by tolerance; packing; reading back against
 //! mapping. `cargo bench --bench frame`
 #![allow(missing_docs)] // criterion's macros make undocumented functions
 #![allow(clippy::unwrap_used)] // a bench that fails stops
@@ -10,7 +10,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use energywave::bench::{DIVISIONS, RESOLUTIONS, Table, turned};
 use energywave::pack::Sources;
 use energywave::ray::ViewPlane;
-use energywave::scene::{Curve, Cylinder, Sphere, Torus};
+use energywave::scene::{Curve, Cylinder, Method, Sphere, Torus};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 
@@ -94,6 +94,37 @@ fn sources(criterion: &mut Criterion) {
     }
 }
 
+/// The exact method at 512x512 by tolerance, and the paper's Simpson rule with 200 divisions beside it.
+fn exact(criterion: &mut Criterion) {
+    let mut renderer = renderer();
+    let mut bench = |name: &str, mut scene: Scene| {
+        let mut group = criterion.benchmark_group(format!("exact, {name}"));
+        scene.image.width = 512;
+        scene.image.height = 512;
+        scene.integration.divisions = 200;
+        group.throughput(Throughput::Elements(512 * 512));
+        let mut frame = 0;
+        let mut time = |name: String, scene: &Scene| {
+            group.bench_function(name, |bencher| {
+                bencher.iter(|| {
+                    frame += 1;
+                    renderer.render_mapped(&turned(scene, frame)).unwrap()[0]
+                });
+            });
+        };
+        time("simpson 200".to_owned(), &scene);
+        scene.integration.method = Method::Exact;
+        for tolerance in [1e-2, 1e-3, 1e-4, 1e-5] {
+            scene.integration.tolerance = tolerance;
+            time(format!("{tolerance:e}"), &scene);
+        }
+    };
+    bench("sphere", crowd("spheres", 1));
+    bench("cylinder", crowd("cylinders", 1));
+    bench("torus", Table::Torus.scene(512, 200));
+    bench("curve", Table::Bezier.scene(512, 200));
+}
+
 fn packing(criterion: &mut Criterion) {
     let scene = crowd("spheres", 4096);
     let plane = ViewPlane::new(&scene.camera, scene.image);
@@ -128,6 +159,6 @@ criterion_group! {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(1));
-    targets = tables, sources, packing, read_back
+    targets = tables, sources, exact, packing, read_back
 }
 criterion_main!(benches);

@@ -9,7 +9,7 @@
 #include "integrate/closed_form.h"
 #include "integrate/panel.h"
 #include "integrate/quadrature.h"
-#include "peaks/curve.h"
+#include "peaks/curve_panels.h"
 #include "peaks/torus.h"
 
 #ifdef SPHERES

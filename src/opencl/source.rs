@@ -33,6 +33,7 @@ embed!(
     "integrate/exact.h",
     "peaks/torus.h",
     "peaks/curve.h",
+    "peaks/curve_panels.h",
     "radiance.h",
     "store.h",
     "render.cl",
