@@ -271,6 +271,94 @@ fn a_ray_through_a_core_has_the_finite_value_of_the_floored_field() {
     }
 }
 
+/// Views and sources of which each once defeated a version of the kernels.
+fn hard_views() -> Vec<(&'static str, Scene)> {
+    let arch = [[-1.0, 0.0, 0.0], [0.0, 0.3, 1.5], [1.0, 0.0, 0.0]];
+    let view = |eye: [f64; 3], target: [f64; 3]| {
+        let mut scene = common::empty_scene(24, 24);
+        (scene.camera.eye, scene.camera.target) = (eye.into(), target.into());
+        scene.integration.method = Method::Exact;
+        scene
+    };
+    let usual = || view([0.0, -4.0, 2.0], [0.0; 3]);
+    let odd = |mut scene: Scene| {
+        scene.image = ImageSize {
+            width: 25,
+            height: 25,
+        };
+        scene
+    };
+    let mut views = Vec::new();
+
+    let mut scene = usual();
+    let mut series = vec![0.0; 10];
+    (series[3], series[7]) = (1.0, 100.0);
+    scene.curves.push(common::curve(arch, Some(series)));
+    views.push(("dark stretches of a curve", scene));
+
+    let mut scene = usual();
+    let series = (0..100).map(|k| f64::from(k % 2)).collect();
+    scene.curves.push(common::curve(arch, Some(series)));
+    views.push(("a hundred weights", scene));
+
+    let mut scene = usual();
+    scene.decay = Some(Decay {
+        alpha: 1e-9,
+        beta: 1e-9,
+    });
+    scene.curves.push(common::curve(arch, None));
+    scene
+        .tori
+        .push(common::torus([0.0; 3], [0.0, 0.1, 1.0], 0.9));
+    views.push(("all light at the ray's begin", scene));
+
+    let mut scene = odd(view([0.0, 0.0, -4.0], [0.0; 3]));
+    scene.camera.up = DVec3::Y;
+    scene
+        .cylinders
+        .push(common::cylinder([0.0; 3], [0.0, 0.0, 1.0]));
+    views.push(("along a line", scene));
+
+    let mut scene = odd(view([0.0, -4.0, 0.0], [0.0; 3]));
+    (scene.camera.near, scene.camera.ray_length) = (1e-6, Some(8.0));
+    scene.spheres.push(common::sphere([0.0, -4.0, 0.0], 1.0));
+    views.push(("from within a point", scene));
+
+    for beside in [1e-4, 1e-2] {
+        let x = 0.9 + beside;
+        let mut scene = odd(view([x, -4.0, 0.0], [x, 0.0, 0.0]));
+        scene
+            .tori
+            .push(common::torus([0.0; 3], [0.0, 0.0, 1.0], 0.9));
+        views.push(("along a tangent of a ring", scene));
+    }
+
+    let mut scene = usual();
+    scene.camera.ray_length = Some(1e5);
+    scene
+        .tori
+        .push(common::torus([0.0; 3], [0.0, 0.0, 1.0], 0.9));
+    views.push(("so long a ray that the floor of distances is wide", scene));
+    views
+}
+
+#[test]
+fn hard_views_meet_the_tolerance() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for (name, scene) in hard_views() {
+        let expected = reference::render(&scene).unwrap();
+        for tolerance in [1e-3, 1e-5] {
+            let mut scene = scene.clone();
+            scene.integration.tolerance = tolerance;
+            let found = difference(&renderer.render(&scene).unwrap(), &expected);
+            assert!(
+                found.max <= (10.0 * tolerance).max(WORST_PIXEL),
+                "{name} at {tolerance:e}: {found:?}"
+            );
+        }
+    }
+}
+
 /// Scenes meant to break something: cameras on cores, rings around the eye, rays along lines and axes, extreme numbers.
 fn awkward_scene(seed: u64) -> Scene {
     let mut random = fastrand::Rng::with_seed(seed);

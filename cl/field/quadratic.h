@@ -38,17 +38,3 @@ floatv quadratic_at(const Quadratic *const q, const floatv s) {
     const floatv x = fma(q->slope, s, q->offset);
     return fma(x, x, q->least);
 }
-
-// On a ray that passes a core at a distance h below the floor f the field is cut off at 1 / f. Its integral is that of
-// a field without floor past the core at the distance (c + f) e^(-c/f), c^2 = f^2 - h^2: the square of it from the
-// squares of h and f, by a polynomial within 0.1 %.
-INLINE floatv floored(const floatv least, const floatv floor2) {
-    const intv is_below = least < floor2;
-    if (!any_lane(is_below))
-        return least;
-    const floatv t = min(least * inverse(floor2), 1.0f);
-    const floatv raised =
-        fma(fma(fma(fma(splat(0.2287136f), t, splat(-0.2680140f)), t, splat(0.2481982f)), t, splat(0.2482847f)), t,
-            splat(0.5418592f));
-    return select(least, raised * floor2, is_below);
-}

@@ -22,9 +22,8 @@ floatv artanh_series(const floatv m2) {
 #define HALF_LN_2 0.346573590f
 #endif
 
-INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2, const Decay decay, const floatv from,
-                          const floatv to) {
-    const floatv least = floored(distance2->least, floor2);
+INLINE floatv without_floor(const Quadratic *const distance2, const Decay decay, const floatv from, const floatv to) {
+    const floatv least = distance2->least;
     const floatv x0 = fma(distance2->slope, from, distance2->offset);
     const floatv x1 = fma(distance2->slope, to, distance2->offset);
     const floatv n0 = nearness(decay, from), n1 = nearness(decay, to);
@@ -57,4 +56,25 @@ INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2,
     if (any_lane(is_small))
         integral = select(integral, ratio * fma(b * ratio * ratio, artanh_series(m2), mean), is_small);
     return 2.0f * decay.strength * integral;
+}
+
+// Where the ray is closer to the core than the floor of all distances the field is constant; a ray in a million.
+floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay, const floatv from,
+                  const floatv to) {
+    const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
+    const floatv nearest = -distance2->offset * per_slope;
+    const floatv reach = 0.5f * twice_sqrt(max(floor2 - distance2->least, 1e-36f)) * per_slope;
+    const floatv begin = clamp(nearest - reach, from, to), end = clamp(nearest + reach, from, to);
+    const floatv inside = advance(decay, begin, nearness(decay, begin), end, nearness(decay, end));
+    const floatv flat = 0.5f * decay.strength * inside * twice_inverse_sqrt_(floor2);
+    return without_floor(distance2, decay, from, begin) + flat + without_floor(distance2, decay, end, to);
+}
+
+INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2, const Decay decay, const floatv from,
+                          const floatv to) {
+    const floatv integral = without_floor(distance2, decay, from, to);
+    const intv is_floored = distance2->least < floor2;
+    if (!any_lane(is_floored))
+        return integral;
+    return select(integral, with_floor(distance2, floor2, decay, from, to), is_floored);
 }

@@ -6,14 +6,14 @@
 // The host gives the positive nodes of the rule, the outermost first, their weights and those of the null rules as
 // GAUSS_..., and as `threshold` how large the coefficients may be, of the integral.
 
-// Panels that may be open at once, cuts of a ray's panels in all, and the length in s below which a panel is left to
-// the next one.
+// Panels that may be open at once, cuts of a ray's panels in all, and the advance of v below which a panel is empty,
+// the share of a panel beyond its outermost node, and the share of the first estimate that errors may be measured by.
 #ifndef MOST_CUTS
 #define MOST_CUTS 64
 #endif
 #define MOST_PANELS 24
-#define SHORTEST_PANEL 1e-7f
 #define BEYOND_NODES 0.03f
+#define FIRST_ESTIMATE 0.25f
 #define LN_2 0.693147181f
 
 typedef struct {
@@ -74,8 +74,9 @@ INLINE PanelSum JOIN(sum_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const 
 // The two panels on both sides of a cut at once: what one waits for, the other fills. Whether both are resolved.
 INLINE bool JOIN(first_two_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay, const float threshold,
                                     const floatv cut, floatv *const integral) {
-    const intv has_first = cut >= SHORTEST_PANEL, has_second = cut <= 1.0f - SHORTEST_PANEL;
-    const floatv first_end = max(cut, SHORTEST_PANEL), second_begin = min(cut, 1.0f - SHORTEST_PANEL);
+    const intv has_first = !is_empty_panel(decay, splat(0.0f), cut),
+               has_second = !is_empty_panel(decay, cut, splat(1.0f));
+    const floatv first_end = select(splat(1.0f), cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
     JOIN(panel_of_, FIELD) first = JOIN(open_, FIELD)(peaks, decay, splat(0.0f), first_end);
     JOIN(panel_of_, FIELD) second = JOIN(open_, FIELD)(peaks, decay, second_begin, splat(1.0f));
     const PanelSum of_first = JOIN(sum_, FIELD)(peaks, decay, &first);
@@ -93,37 +94,51 @@ INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sou
     const JOIN(FIELD, _peaks) peaks = JOIN(FIELD, _peaks_along)(ray, sources, index);
     floatv all_from[MOST_PANELS], all_to[MOST_PANELS], integral;
     uint open = JOIN(FIELD, _panels)(&peaks, decay, all_from, all_to, &integral);
+    const uint most_cuts = MOST_CUTS + JOIN(FIELD, _more_cuts)(&peaks);
     uint cuts = 0, nodes = 0;
+    floatv estimate = integral;
 #ifdef FIRST_TWO
     nodes += 4 * GAUSS_PAIRS;
-    if (JOIN(first_two_, FIELD)(&peaks, decay, threshold, all_to[1], &integral))
+    floatv both;
+    if (JOIN(first_two_, FIELD)(&peaks, decay, threshold, all_to[1], &both)) {
         open = 0;
-    else
-        integral = splat(0.0f);
+        integral = both;
+    }
+    estimate = both;
 #endif
-    while (open > 0) {
+    const uint all = open;
+    bool is_survey = JOIN(FIELD, _is_uneven)(&peaks);
+    while (open > 0 || is_survey) {
+        if (open == 0) {
+            is_survey = false, open = all;
+            continue;
+        }
         --open;
-        const floatv from = all_from[open], to = all_to[open];
-        const intv is_empty = to - from < SHORTEST_PANEL;
+        const floatv from = all_from[open];
+        const intv is_empty = is_empty_panel(decay, from, all_to[open]);
         if (!any_lane(!is_empty))
             continue;
-        const floatv end = max(to, from + SHORTEST_PANEL);
+        const floatv to = select(all_to[open], splat(1.0f), is_empty);
         floatv value = splat(0.0f);
         intv is_done = is_empty;
         if (cuts > 0)
-            is_done |= JOIN(FIELD, _closed)(&peaks, decay, from, end, &value);
+            is_done |= JOIN(FIELD, _closed)(&peaks, decay, from, to, &value);
         if (any_lane(!is_done)) {
-            JOIN(panel_of_, FIELD) opened = JOIN(open_, FIELD)(&peaks, decay, from, end);
+            JOIN(panel_of_, FIELD) opened = JOIN(open_, FIELD)(&peaks, decay, from, to);
             const PanelSum panel = JOIN(sum_, FIELD)(&peaks, decay, &opened);
             nodes += 2 * GAUSS_PAIRS;
             value = select(panel.integral, value, is_done);
-            const floatv allowed = threshold * (integral + value);
-            const intv is_unseen = panel.is_broken & (BEYOND_NODES * value > allowed);
+            if (is_survey) {
+                estimate += select(value, splat(0.0f), is_empty);
+                continue;
+            }
+            const floatv allowed = threshold * max(fabs(integral + value), FIRST_ESTIMATE * fabs(estimate));
+            const intv is_unseen = panel.is_broken & (BEYOND_NODES * fabs(value) > allowed);
             const intv is_rough = (panel.unresolved2 > allowed * allowed) | is_unseen;
-            if (cuts < MOST_CUTS && open + 2 <= MOST_PANELS && any_lane(is_rough & !is_done)) {
-                const floatv cut = JOIN(FIELD, _split)(&peaks, from, end, panel.middle);
-                all_from[open] = cut, all_to[open] = to;
-                all_from[open + 1] = from, all_to[open + 1] = min(cut, to);
+            if (cuts < most_cuts && open + 2 <= MOST_PANELS && any_lane(is_rough & !is_done)) {
+                const floatv cut = JOIN(FIELD, _split)(&peaks, from, to, panel.middle);
+                all_from[open] = cut, all_to[open] = select(to, cut, is_empty);
+                all_from[open + 1] = from, all_to[open + 1] = select(cut, from, is_empty);
                 open += 2;
                 ++cuts;
                 continue;

@@ -7,6 +7,9 @@
 #include "../elementary.h"
 #include "../ray.h"
 
+// The advance of v below which a panel is empty.
+#define SHORTEST_PANEL 1e-7f
+
 // A complex zero of the squared distance along the ray, as a parameter s.
 typedef struct {
     floatv re, im; // im > 0
@@ -28,6 +31,25 @@ typedef struct {
     floatv middle;      // where to cut the panel in two, as a parameter s
     intv is_broken;     // whether it must be cut whatever the nodes say
 } PanelSum;
+
+// Whether so little of v passes that nothing adds up.
+intv is_empty_panel(const Decay decay, const floatv from, const floatv to) {
+    return advance(decay, from, nearness(decay, from), to, nearness(decay, to)) < SHORTEST_PANEL;
+}
+
+// A ray that passes a core at a distance h below the floor f sees the field cut off at 1 / f. Where core and ray are
+// straight its integral is that of a field without floor past the core at the distance (c + f) e^(-c/f), c^2 = f^2 -
+// h^2: the square of it from the squares of h and f, by a polynomial within 0.1 %.
+INLINE floatv floored(const floatv least, const floatv floor2) {
+    const intv is_below = least < floor2;
+    if (!any_lane(is_below))
+        return least;
+    const floatv t = min(least * inverse(floor2), 1.0f);
+    const floatv raised =
+        fma(fma(fma(fma(splat(0.2287136f), t, splat(-0.2680140f)), t, splat(0.2481982f)), t, splat(0.2482847f)), t,
+            splat(0.5418592f));
+    return select(least, raised * floor2, is_below);
+}
 
 // Of two peaks, the one closer to the panel in the complex plane.
 Peak nearer_peak(const Peak a, const Peak b, const floatv from, const floatv to) {

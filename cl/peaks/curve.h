@@ -150,7 +150,7 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     const floatv facing = fma(-2.0f * path->bend, offset.y, speed2);
     const floatv climb = fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across);
     const floatv slid = climb * climb * inverse(max(max(facing, 1e-3f * speed2), 1e-30f));
-    const floatv curvature = max(select(peaks->span2, peaks->span2 - slid, fabs(x) < 0.5f), 1e-4f * peaks->span2);
+    const floatv curvature = max(select(peaks->span2, peaks->span2 - slid, fabs(x) < 0.5f), 1e-6f * peaks->span2);
     const float3v span = {path->along.slope, path->across.slope, path->normal.slope};
     const floatv slope = dot3(offset, span);
     const floatv per_curvature = inverse(curvature);
@@ -159,13 +159,15 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     peak->re = -slope * per_curvature;
     peak->im = 0.5f * twice_sqrt(fma(lowest, per_curvature, 0.5f * path->floor2 * per_span2));
 
+    const intv is_thin = (lowest < path->floor2) & (path->floor2 < 1e-6f * size2);
     curve_near near = {*path, x, {true, true}};
+    near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2) - lowest, is_thin);
+    near.path.floor2 = select(path->floor2, 0.5f * path->floor2, is_thin);
     near.path.along.at = offset.x;
     near.path.across.at = offset.y;
     near.path.normal.at = offset.z;
     near.path.p.at = point.p;
     near.path.h.at = point.h;
-    near.path.softening2 = path->softening2 + floored(lowest, path->floor2) - lowest;
     return near;
 }
 
@@ -207,6 +209,6 @@ INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
     const floatv nearest = polished(&near->path, &point, root);
     distance2 = min(distance2, curve_distance2(&near->path, &point, nearest));
 #endif
-    const floatv field = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, 0.5f * near->path.floor2));
+    const floatv field = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
     return near->path.spline_count ? field * curve_intensity(&near->path, nearest) : field;
 }

@@ -198,13 +198,24 @@ INLINE uint curve_panels(const curve_peaks *const peaks, const Decay decay, floa
     return 5;
 }
 
+// Whether all panels must be seen before errors can be measured by what they add up to: some may be dark.
+INLINE bool curve_is_uneven(const curve_peaks *const peaks) {
+    return peaks->path.spline_count > 0;
+}
+
+// Every piece of a local intensity may need panels of its own.
+INLINE uint curve_more_cuts(const curve_peaks *const peaks) {
+    return 4 * peaks->path.spline_count;
+}
+
 curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is_b) {
     const curve_sight sight = {select(a.s, b.s, is_b), select(a.x, b.x, is_b)};
     return sight;
 }
 
 // Whether the nearest point jumps between an end of a panel and the outermost node, unseen by all others: the
-// field has a kink there, which counts when tolerances are tight, and with a local intensity a jump.
+// field has a kink there, which counts when tolerances are tight, and with a local intensity a jump. Or whether a panel
+// spans so many pieces of a local intensity that its nodes cannot see them all.
 INLINE intv curve_is_broken(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv first,
                             const floatv last) {
     const curve_path *const path = &peaks->path;
@@ -213,9 +224,10 @@ INLINE intv curve_is_broken(const curve_peaks *const peaks, const floatv from, c
         return from > to;
 #endif
     const floatv inside = 1e-4f * (to - from);
-    const floatv begin = curve_seen_from(path, from + inside).x - curve_seen_from(path, first).x;
-    const floatv end = curve_seen_from(path, to - inside).x - curve_seen_from(path, last).x;
-    return max(fabs(begin), fabs(end)) > 0.1f;
+    const floatv at_begin = curve_seen_from(path, from + inside).x, at_end = curve_seen_from(path, to - inside).x;
+    const floatv begin = at_begin - curve_seen_from(path, first).x, end = at_end - curve_seen_from(path, last).x;
+    const floatv pieces = fabs(at_end - at_begin) * (float)path->spline_count;
+    return (max(fabs(begin), fabs(end)) > 0.1f) | (pieces > 4.0f);
 }
 
 // Where to cut a panel that is not resolved: where the nearest point jumps, or else in the middle. Halving closes in on

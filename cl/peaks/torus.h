@@ -66,6 +66,15 @@ INLINE intv torus_closed(const torus_peaks *const peaks, const Decay decay, cons
     return from > to;
 }
 
+// Whether all panels must be seen before errors can be measured by what they add up to.
+INLINE bool torus_is_uneven(const torus_peaks *const peaks) {
+    return false;
+}
+
+INLINE uint torus_more_cuts(const torus_peaks *const peaks) {
+    return 0;
+}
+
 // Along a ray the field jumps nowhere.
 INLINE intv torus_is_broken(const torus_peaks *const peaks, const floatv from, const floatv to, const floatv first,
                             const floatv last) {
@@ -84,7 +93,7 @@ typedef struct {
     floatv excess, excess_slope;             // rho^2 - R^2 and its derivative, doubled
     floatv height, height_slope;
     float major_radius;
-    floatv softening2;
+    floatv softening2, floor2;
 } torus_near;
 
 INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv base) {
@@ -100,6 +109,7 @@ INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv bas
     near.height = fma(path->height_slope, base, path->height);
     near.height_slope = path->height_slope;
     near.softening2 = path->softening2;
+    near.floor2 = path->floor2;
     return near;
 }
 
@@ -141,12 +151,13 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
         return near;
     }
 
-    // Close to the ring more digits are needed. Next to it the ring is straight, and the root of the quadratic may have
-    // lost too many.
+    // Close to the ring more digits are needed. Next to it the ring is straight, but for rays along it, and the root of
+    // the quadratic may have lost too many.
     torus_near_refine(peaks, *base, &near);
     torus_offset offset = torus_offset_of(&near);
     const floatv distance2 = fma(offset.from_ring, offset.from_ring, near.height * near.height);
-    const intv is_next = distance2 < 1e-4f * radius2;
+    const intv is_next =
+        (distance2 < 1e-4f * radius2) & (offset.slope2 > 0.2f * peaks->ray->length * peaks->ray->length);
     if (!any_lane(is_next)) {
         peak->re -= *base;
         return near;
@@ -162,7 +173,9 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     const floatv aside = fma(offset.from_ring, near.height_slope, -near.height * offset.from_ring_slope);
     const floatv least = fma(aside * per_slope2, aside, path->softening2);
     const floatv lifted = floored(least, path->floor2);
-    near.softening2 += select(splat(0.0f), lifted - least, is_next);
+    const intv is_thin = is_next & (path->floor2 < 1e-4f * radius2);
+    near.softening2 += select(splat(0.0f), lifted - least, is_thin);
+    near.floor2 = select(near.floor2, 0.5f * near.floor2, is_thin);
     peak->re = select(peak->re - *base, ahead, is_next);
     peak->im = select(peak->im, 0.5f * twice_sqrt(lifted * per_slope2), is_next);
     return near;
@@ -181,6 +194,7 @@ INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv excess = fma(fma(curvature, x, near->excess_slope), x, near->excess);
     const floatv height = fma(near->height_slope, x, near->height);
     const floatv aside2 = fma(height, height, near->softening2);
-    const floatv scaled2 = fma(excess, excess, aside2 * (sum * sum));
+    const floatv sum2 = sum * sum;
+    const floatv scaled2 = max(fma(excess, excess, aside2 * sum2), near->floor2 * sum2);
     return sum * coarse_twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f));
 }
