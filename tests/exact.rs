@@ -32,26 +32,6 @@ fn ray_limit(kind: &str) -> f64 {
     }
 }
 
-fn figures() -> Vec<(String, Scene)> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
-    let mut figures = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|ending| ending == "toml") {
-            let mut scene = Scene::from_file(&path).unwrap();
-            scene.integration.method = Method::Exact;
-            scene.image = ImageSize {
-                width: 48,
-                height: 48,
-            };
-            let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
-            figures.push((name, scene));
-        }
-    }
-    assert!(figures.len() >= 12, "only {} scenes", figures.len());
-    figures
-}
-
 fn random_scenes() -> Vec<(String, Scene)> {
     (0..50)
         .map(|seed| (format!("random {seed}"), random_scene(seed, 36)))
@@ -88,7 +68,12 @@ fn plot(tolerance: f64, found: &[Difference]) -> String {
 
 #[test]
 fn figures_and_random_scenes_meet_every_tolerance() {
-    let scenes = with_references(figures().into_iter().chain(random_scenes()).collect());
+    let scenes = with_references(
+        common::figures(48, Method::Exact)
+            .into_iter()
+            .chain(random_scenes())
+            .collect(),
+    );
     let mut renderer = renderer(common::device().lanes, "");
     println!("          1e-8    1e-7    1e-6    1e-5    1e-4    1e-3    1e-2    1e-1");
     let mut missed = Vec::new();

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{LANE_WIDTHS, difference, empty_scene, full_scene, renderer};
-use energywave::scene::{ImageSize, Measure, Method};
+use energywave::scene::{Measure, Method};
 use energywave::{Scene, reference};
 use glam::DVec3;
 
@@ -45,32 +45,13 @@ fn scenes(width: u32, height: u32) -> Vec<(String, Scene)> {
     scenes
 }
 
-fn figures() -> Vec<(String, Scene)> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
-    let mut figures = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|ending| ending == "toml") {
-            let mut scene = Scene::from_file(&path).unwrap();
-            scene.image = ImageSize {
-                width: 96,
-                height: 96,
-            };
-            scene.integration.method = Method::Simpson;
-            figures.push((
-                path.file_stem().unwrap().to_str().unwrap().to_owned(),
-                scene,
-            ));
-        }
-    }
-    assert!(figures.len() >= 12, "only {} scenes", figures.len());
-    figures
-}
-
 #[test]
 fn every_image_matches_the_float64_simpson_rule_in_its_worst_pixel() {
     let mut renderer = renderer(common::device().lanes, "");
-    for (name, scene) in scenes(61, 47).into_iter().chain(figures()) {
+    for (name, scene) in scenes(61, 47)
+        .into_iter()
+        .chain(common::figures(96, Method::Simpson))
+    {
         let image = renderer.render(&scene).unwrap();
         let found = difference(&image, &reference::render_simpson(&scene).unwrap());
         println!("{name}: {found:?}");

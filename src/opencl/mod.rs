@@ -6,6 +6,7 @@ mod buffer;
 mod compute;
 mod discover;
 mod failure;
+mod kernels;
 mod launch;
 mod mapped;
 mod program;

@@ -1,21 +1,20 @@
 //! Renders scenes on an OpenCL device: uploads what changed, launches the kernels, reads the image back.
 
-use std::collections::HashMap;
 use std::ops::{ControlFlow, Range};
 
 use opencl3::event::Event;
-use opencl3::kernel::Kernel;
 
+use super::kernels::{Kernels, Task, Variant};
 use super::launch::{Pace, Part, Work, counts, launch, source_count};
 use super::mapped::Mapped;
-use super::program::{Argument, BuildOptions, Program, enqueue, run_time, set_arguments};
+use super::program::{Argument, BuildOptions, enqueue, run_time, set_arguments};
 use super::{Compute, DeviceBuffer, OpenClDevice, Uploaded};
 use crate::device::DeviceType;
 use crate::error::{Error, Result};
 use crate::pack::{self, Rule, Sources, layout};
 use crate::ray::{Ray, ViewPlane};
 use crate::renderer::FrameCost;
-use crate::scene::{Method, Scene};
+use crate::scene::Scene;
 
 /// A pixel of the output: linear RGBA.
 type Pixel = [f32; 4];
@@ -24,50 +23,13 @@ type Pixel = [f32; 4];
 #[derive(Debug)]
 pub struct OpenClRenderer {
     options: BuildOptions,
-    /// Built when they are first needed.
-    kernels: HashMap<Task, Kernel>,
+    kernels: Kernels,
     lanes: u32,
     lists: Lists,
     pub(super) output: Option<DeviceBuffer<Pixel>>,
     pace: Pace,
     cost: FrameCost,
     pub(super) compute: Compute,
-}
-
-/// What a kernel is built for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct Task {
-    method: Variant,
-    /// Which kinds of source the scene has, in the order of [`KIND_OPTIONS`].
-    kinds: [bool; 4],
-    /// Single rays instead of an image's.
-    has_rays: bool,
-}
-
-/// What the kernels' compiler is told of the kinds of source that there are.
-const KIND_OPTIONS: [&str; 4] = [" -D SPHERES", " -D CYLINDERS", " -D TORI", " -D CURVES"];
-
-/// A way to integrate that has kernels of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-enum Variant {
-    Simpson,
-    Exact {
-        /// Of the rule: what its kernels are built with.
-        nodes: u32,
-        coarse: bool,
-    },
-}
-
-impl Variant {
-    fn of(method: Method, rule: Rule) -> Self {
-        match method {
-            Method::Simpson => Self::Simpson,
-            Method::Exact => Self::Exact {
-                nodes: rule.nodes,
-                coarse: rule.coarse,
-            },
-        }
-    }
 }
 
 /// A launch under way.
@@ -109,7 +71,7 @@ impl OpenClRenderer {
     /// [`Error::Device`] if the driver refuses.
     pub fn new(device: &OpenClDevice, options: &BuildOptions) -> Result<Self> {
         Ok(Self {
-            kernels: HashMap::new(),
+            kernels: Kernels::default(),
             lanes: options.lanes.unwrap_or(device.lanes),
             lists: Lists::new(),
             output: None,
@@ -164,33 +126,6 @@ impl OpenClRenderer {
         Ok(radiances)
     }
 
-    /// Makes sure of a kernel.
-    fn prepare(&mut self, task: Task, rule: &Rule) -> Result<()> {
-        if self.kernels.contains_key(&task) {
-            return Ok(());
-        }
-        let mut definitions = match task.method {
-            Variant::Simpson => String::new(),
-            Variant::Exact { .. } => rule.definitions(),
-        };
-        for (option, is_there) in KIND_OPTIONS.into_iter().zip(task.kinds) {
-            if is_there {
-                definitions += option;
-            }
-        }
-        let options = BuildOptions {
-            extra: format!("{definitions} {}", self.options.extra),
-            ..self.options.clone()
-        };
-        let (file, name) = match task.has_rays {
-            false => ("render.cl", "render"),
-            true => ("trace.cl", "trace"),
-        };
-        let program = Program::build(&self.compute, &[file], &options)?;
-        self.kernels.insert(task, program.kernel(name)?);
-        Ok(())
-    }
-
     fn upload(
         &mut self,
         scene: &Scene,
@@ -209,7 +144,8 @@ impl OpenClRenderer {
             kinds: counts(&sources).map(|count| count > 0),
             has_rays: rays.is_some(),
         };
-        self.prepare(task, &rule)?;
+        self.kernels
+            .prepare(&self.compute, &self.options, task, &rule)?;
         let nodes = match task.method {
             Variant::Simpson => pack::nodes(scene.integration.divisions, scene.decay),
             Variant::Exact { .. } => Vec::new(),
@@ -344,9 +280,7 @@ impl OpenClRenderer {
     }
 
     fn launch(&self, job: &Job, part: &Part, slot: u32) -> Result<Launched> {
-        let kernel = self.kernels.get(&job.task).ok_or_else(|| {
-            Error::Unsupported("a kernel that was never built was launched".to_owned())
-        })?;
+        let kernel = self.kernels.get(job.task)?;
         let output = self.output()?;
         let launch = launch(part, slot, &job.sources, job.work.node_count);
         let lists = &self.lists;

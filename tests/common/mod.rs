@@ -138,3 +138,21 @@ pub fn full_scene(width: u32, height: u32) -> Scene {
 pub fn difference(image: &RadianceImage, reference: &RadianceImage) -> Difference {
     compare(image, reference).expect("images of one size")
 }
+
+/// The scenes of the repository, so many pixels wide and high, by a method.
+pub fn figures(size: u32, method: Method) -> Vec<(String, Scene)> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+    let mut figures = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|ending| ending == "toml") {
+            let mut scene = Scene::from_file(&path).unwrap();
+            scene.integration.method = method;
+            (scene.image.width, scene.image.height) = (size, size);
+            let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+            figures.push((name, scene));
+        }
+    }
+    assert!(figures.len() >= 12, "only {} scenes", figures.len());
+    figures
+}

@@ -1,0 +1,96 @@
+//! The kernels of a renderer, built when a scene first needs them: for its method, and for the kinds of source it has.
+
+use std::collections::HashMap;
+
+use opencl3::kernel::Kernel;
+
+use super::Compute;
+use super::program::{BuildOptions, Program};
+use crate::error::{Error, Result};
+use crate::pack::Rule;
+use crate::scene::Method;
+
+/// What a kernel is built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct Task {
+    pub method: Variant,
+    /// Which kinds of source the scene has, in the order of [`KIND_OPTIONS`].
+    pub kinds: [bool; 4],
+    /// Single rays instead of an image's.
+    pub has_rays: bool,
+}
+
+/// What the kernels' compiler is told of the kinds of source that there are.
+const KIND_OPTIONS: [&str; 4] = [" -D SPHERES", " -D CYLINDERS", " -D TORI", " -D CURVES"];
+
+/// A way to integrate that has kernels of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Variant {
+    Simpson,
+    Exact {
+        /// Of the rule: what its kernels are built with.
+        nodes: u32,
+        coarse: bool,
+    },
+}
+
+impl Variant {
+    pub(super) fn of(method: Method, rule: Rule) -> Self {
+        match method {
+            Method::Simpson => Self::Simpson,
+            Method::Exact => Self::Exact {
+                nodes: rule.nodes,
+                coarse: rule.coarse,
+            },
+        }
+    }
+}
+
+/// Every kernel built so far.
+#[derive(Debug, Default)]
+pub(super) struct Kernels(HashMap<Task, Kernel>);
+
+impl Kernels {
+    /// Makes sure of a kernel. `rule` is what the method `exact` integrates with.
+    ///
+    /// # Errors
+    /// As [`Program::build`].
+    pub(super) fn prepare(
+        &mut self,
+        compute: &Compute,
+        options: &BuildOptions,
+        task: Task,
+        rule: &Rule,
+    ) -> Result<()> {
+        if self.0.contains_key(&task) {
+            return Ok(());
+        }
+        let mut definitions = match task.method {
+            Variant::Simpson => String::new(),
+            Variant::Exact { .. } => rule.definitions(),
+        };
+        for (option, is_there) in KIND_OPTIONS.into_iter().zip(task.kinds) {
+            if is_there {
+                definitions += option;
+            }
+        }
+        let options = BuildOptions {
+            extra: format!("{definitions} {}", options.extra),
+            ..options.clone()
+        };
+        let (file, name) = match task.has_rays {
+            false => ("render.cl", "render"),
+            true => ("trace.cl", "trace"),
+        };
+        let program = Program::build(compute, &[file], &options)?;
+        self.0.insert(task, program.kernel(name)?);
+        Ok(())
+    }
+
+    /// A kernel that was made sure of.
+    pub(super) fn get(&self, task: Task) -> Result<&Kernel> {
+        self.0.get(&task).ok_or_else(|| {
+            Error::Unsupported("a kernel that was never built was launched".to_owned())
+        })
+    }
+}
