@@ -35,16 +35,6 @@ fine3v fine3(const float4 value, const float4 rest) {
     return r;
 }
 
-// base + step count
-fine3v fine_step3(const float4 base, const float4 base_rest, const float4 step, const float4 step_rest,
-                  const uint count) {
-    const fine k = (fine)count;
-    const fine3v r = {(finev)(fma((fine)step.x + (fine)step_rest.x, k, (fine)base.x + (fine)base_rest.x)),
-                      (finev)(fma((fine)step.y + (fine)step_rest.y, k, (fine)base.y + (fine)base_rest.y)),
-                      (finev)(fma((fine)step.z + (fine)step_rest.z, k, (fine)base.z + (fine)base_rest.z))};
-    return r;
-}
-
 float3v from_fine3(const fine3v v) {
     const float3v r = {from_finev(v.x), from_finev(v.y), from_finev(v.z)};
     return r;

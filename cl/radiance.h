@@ -12,6 +12,11 @@
 #include "peaks/curve_panels.h"
 #include "peaks/torus.h"
 
+// A kernel that takes integrals in several places may have them as calls: -D PER_RAY=
+#ifndef PER_RAY
+#define PER_RAY INLINE
+#endif
+
 #ifdef SPHERES
 #define FIELD sphere
 #ifdef EXACT

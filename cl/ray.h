@@ -30,22 +30,30 @@ INLINE Ray make_ray(const fine3v origin, const fine3v toward, const floatv stret
     return ray;
 }
 
-// The rays through the centres of LANES consecutive pixels from this index on, row by row from the top left. Lanes
-// beyond the row's end wrap round to the next row.
-INLINE Ray pixel_ray(const View *const view, const uint first) {
-    const uint row = first / view->width;
-    fine3v in_row = fine_step3(view->first_pixel, view->first_pixel_rest, view->row_step, view->row_step_rest, row);
-    uintv column = first - row * view->width + LANE_NUMBERS;
-    while (any_lane(column >= view->width)) {
-        const uintv is_beyond = select((uintv)(0), (uintv)(1), column >= view->width);
-        in_row = fine_fma3(fine3(view->row_step, view->row_step_rest), count_to_finev(is_beyond), in_row);
-        column -= is_beyond * view->width;
-    }
+// The rays through the centres of pixels.
+INLINE Ray ray_through(const View *const view, const uintv column, const uintv row) {
+    const fine3v first = fine3(view->first_pixel, view->first_pixel_rest);
+    const fine3v row_step = fine3(view->row_step, view->row_step_rest);
     const fine3v column_step = fine3(view->column_step, view->column_step_rest);
+    const fine3v in_row = fine_fma3(row_step, count_to_finev(row), first);
     const fine3v origin = fine_fma3(column_step, count_to_finev(column), in_row);
     const float3v toward = from_fine3(origin);
     const floatv stretch = 0.5f * view->ray_length * twice_inverse_sqrt_(dot3(toward, toward));
     return make_ray(origin, origin, stretch, splat(view->ray_length), view->softening2);
+}
+
+// The rays of LANES consecutive pixels from this index on, row by row from the top left. Lanes beyond a row's end wrap
+// round to the next one.
+INLINE Ray pixel_ray(const View *const view, const uint first) {
+    const uint first_row = first / view->width;
+    uintv row = (uintv)(first_row);
+    uintv column = first - first_row * view->width + LANE_NUMBERS;
+    while (any_lane(column >= view->width)) {
+        const uintv is_beyond = select((uintv)(0), (uintv)(1), column >= view->width);
+        row += is_beyond;
+        column -= is_beyond * view->width;
+    }
+    return ray_through(view, column, row);
 }
 
 // L(s) - M, M given in two parts. Panels that meet in s meet here too: s is not rounded again.

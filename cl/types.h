@@ -34,6 +34,22 @@ typedef struct {
     uint padding_0, padding_1, padding_2;
 } Launch;
 
+// One pass over tiles of one size, squares of pixels. The first has the largest, each of the others what the one before
+// left open, in quarters.
+typedef struct {
+    uint size;                // of a tile, pixels
+    uint inner, parent_inner; // nodes are the pixels 0, inner, size - 1 - inner and size - 1 of its rows and columns
+    uint level;               // 0: the first pass
+    uint is_last;             // 1: what is still open is computed pixel by pixel
+    uint columns, tile_count; // first pass: tiles in a row of tiles, and in all
+    uint read_from;           // where the list of open tiles has those of the pass before
+    uint write_to;            // where it gets this one's
+    uint word_count;          // words of 32 sources
+    float pixel_step;         // from a pixel to its neighbour, world units on the projection plane
+    float most_odd;           // how large an odd and an even highest coefficient of an interpolation may be, of the least
+    float most_even;          // value
+} TilePass;
+
 // A ray that is no pixel's: origin S, span E - S.
 typedef struct {
     float4 origin, origin_rest;
@@ -94,6 +110,7 @@ typedef struct {
 #define CHECK_SIZE(type, size) typedef char type##_has_the_size_that_the_host_expects[sizeof(type) == (size) ? 1 : -1]
 CHECK_SIZE(View, SIZEOF_VIEW);
 CHECK_SIZE(Launch, SIZEOF_LAUNCH);
+CHECK_SIZE(TilePass, SIZEOF_TILEPASS);
 CHECK_SIZE(RayRecord, SIZEOF_RAYRECORD);
 CHECK_SIZE(Node, SIZEOF_NODE);
 CHECK_SIZE(Sphere, SIZEOF_SPHERE);

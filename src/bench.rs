@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::image::{Difference, RadianceImage, compare};
 use crate::opencl::BuildOptions;
 use crate::renderer::{FrameCost, Renderer};
-use crate::scene::{Camera, Curve, Decay, ImageSize, Measure, Method, Scene, Torus};
+use crate::scene::{Camera, Curve, Decay, ImageSize, Method, Scene, Torus};
 
 /// Camera positions of one turn around the scene.
 pub const FRAMES_PER_TURN: u32 = 64;
@@ -176,21 +176,19 @@ pub fn measure(renderer: &mut Renderer, scene: &Scene, time: Duration) -> Result
     })
 }
 
-/// Nodes that a frame of the method `exact` takes, by kernels that count instead of adding light; closed forms take none.
+/// Nodes that a frame of the method `exact` takes, by kernels that count them; closed forms take none.
 /// A ray counts the nodes of all rays that are side by side with it in one vector.
 ///
 /// # Errors
 /// As [`Renderer::render`].
 pub fn count_field_evaluations(device: &Device, scene: &Scene) -> Result<u64> {
     let options = BuildOptions {
-        extra: "-D COUNT_NODES".to_owned(),
+        counts_nodes: true,
         ..BuildOptions::default()
     };
-    let mut scene = scene.clone();
-    count_instead_of_light(&mut scene);
-    let image = Renderer::with_options(device, &options)?.render(&scene)?;
-    let counts = image.as_slice().iter().step_by(4);
-    Ok(counts.map(|count| f64::from(*count)).sum::<f64>() as u64)
+    let mut renderer = Renderer::with_options(device, &options)?;
+    renderer.render(scene)?;
+    Ok(renderer.last_cost().field_evaluations)
 }
 
 /// A way to integrate, how far it is from the truth, and how fast.
@@ -243,20 +241,6 @@ pub fn accuracies(
         });
     }
     Ok(rows)
-}
-
-/// Makes a scene show, built with the option `-D COUNT_NODES`, how many nodes each pixel takes: every source counts once.
-pub fn count_instead_of_light(scene: &mut Scene) {
-    let one = (1.0, DVec3::ONE);
-    for source in &mut scene.tori {
-        (source.coefficient, source.color) = one;
-    }
-    for source in &mut scene.curves {
-        (source.coefficient, source.color) = one;
-    }
-    scene.spheres.clear();
-    scene.cylinders.clear();
-    scene.integration.measure = Measure::Parameter;
 }
 
 fn median(times: &mut [Duration]) -> Result<Duration> {

@@ -87,7 +87,7 @@ INLINE bool JOIN(first_two_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, cons
 }
 #endif
 
-INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
+PER_RAY floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
                                   const Quadrature *const quadrature) {
     const Decay decay = quadrature->decay;
     const float threshold = quadrature->JOIN(FIELD, _threshold);
@@ -147,7 +147,7 @@ INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sou
         integral += select(value, splat(0.0f), is_empty);
     }
 #ifdef COUNT_NODES
-    return splat((float)nodes);
+    atomic_add(quadrature->counts + COUNT_NODES_TAKEN, nodes * LANES);
 #endif
     return integral;
 }

@@ -8,4 +8,5 @@ typedef struct {
     uint node_count;
     Decay decay;
     float torus_threshold, curve_threshold; // exact: how large unresolved coefficients may be, of the integral
+    __global uint *counts;
 } Quadrature;

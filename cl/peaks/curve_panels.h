@@ -66,16 +66,17 @@ INLINE floatv middle_cut(const curve_peaks *const peaks) {
     return select(between, equidistant(peaks, splat(-1.0f - path->vertex), splat(1.0f - path->vertex)), jumps);
 }
 
-// A point of the ray and the parameter of the curve's point nearest to it. A call: it is asked for in many places, and
-// rarely.
+// A point of the ray, the parameter of the curve's point nearest to it, and their squared distance. A call: it is asked
+// for in many places, and rarely.
 typedef struct {
-    floatv s, x;
+    floatv s, x, distance2;
 } curve_sight;
 
 curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
     const curve_point point = curve_point_at(path, s);
-    floatv distance2;
-    const curve_sight sight = {s, nearest_on_curve(path, &point, &distance2)};
+    curve_sight sight;
+    sight.s = s;
+    sight.x = nearest_on_curve(path, &point, &sight.distance2);
     return sight;
 }
 
@@ -209,7 +210,8 @@ INLINE uint curve_more_cuts(const curve_peaks *const peaks) {
 }
 
 curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is_b) {
-    const curve_sight sight = {select(a.s, b.s, is_b), select(a.x, b.x, is_b)};
+    const curve_sight sight = {select(a.s, b.s, is_b), select(a.x, b.x, is_b),
+                               select(a.distance2, b.distance2, is_b)};
     return sight;
 }
 

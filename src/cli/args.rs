@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use energywave::Error;
-use energywave::scene::{ImageSize, Method, Scene};
+use energywave::scene::{ImageSize, Method, Sampling, Scene};
 
 /// Volumetric energy effects, integrated along every view ray on any OpenCL device.
 #[derive(Debug, Parser)]
@@ -133,6 +133,17 @@ pub struct Overrides {
     /// Relative error aimed at by the exact method; chooses --method exact
     #[arg(long, value_parser = tolerance, allow_hyphen_values = true, requires = "scene")]
     pub tolerance: Option<f64>,
+    /// Where the exact method takes integrals; chooses --method exact
+    #[arg(long, requires = "scene")]
+    pub sampling: Option<SamplingName>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SamplingName {
+    /// At every pixel
+    Pixels,
+    /// At a few pixels of a tile, at every pixel near cores
+    Tiles,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -150,6 +161,7 @@ impl Overrides {
             && self.method.is_none()
             && self.divisions.is_none()
             && self.tolerance.is_none()
+            && self.sampling.is_none()
     }
 
     /// Replaces what was typed.
@@ -172,13 +184,30 @@ impl Overrides {
         scene.image = self.size.unwrap_or(scene.image);
         integration.divisions = self.divisions.unwrap_or(integration.divisions);
         integration.tolerance = self.tolerance.unwrap_or(integration.tolerance);
+        let (asks_simpson, asks_exact) = (
+            self.divisions.is_some(),
+            self.tolerance.is_some() || self.sampling.is_some(),
+        );
         integration.method = match self.method {
             Some(MethodName::Simpson) => Method::Simpson,
             Some(MethodName::Exact) => Method::Exact,
             // Who names divisions wants them; who names a tolerance wants that met.
-            None if self.divisions.is_some() && self.tolerance.is_none() => Method::Simpson,
-            None if self.tolerance.is_some() && self.divisions.is_none() => Method::Exact,
+            None if asks_simpson && !asks_exact => Method::Simpson,
+            None if asks_exact && !asks_simpson => Method::Exact,
             None => integration.method,
+        };
+        if integration.method == Method::Simpson {
+            if self.sampling == Some(SamplingName::Tiles) {
+                let message = "--sampling tiles is for --method exact; Simpson's rule takes every pixel";
+                return Err(Error::Unsupported(message.to_owned()));
+            }
+            // What the file says of the method that it names.
+            integration.sampling = None;
+        }
+        integration.sampling = match self.sampling {
+            Some(SamplingName::Pixels) => Some(Sampling::Pixels),
+            Some(SamplingName::Tiles) => Some(Sampling::Tiles),
+            None => integration.sampling,
         };
         Ok(())
     }

@@ -7,7 +7,7 @@ use energywave::bench::{
     DIVISIONS, RESOLUTIONS, Speed, Table, count_field_evaluations, measure, turned,
 };
 use energywave::image::Output;
-use energywave::scene::Method;
+use energywave::scene::{Method, Sampling};
 use energywave::{Device, Error, Renderer, Scene};
 use serde::Serialize;
 
@@ -36,7 +36,7 @@ struct SceneSpeed {
     width: u32,
     height: u32,
     method: Method,
-    sampling: &'static str,
+    sampling: Sampling,
     fps: f64,
     kernel_ms: f64,
     evaluations: u64,
@@ -131,7 +131,7 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
         width: scene.image.width,
         height: scene.image.height,
         method: scene.integration.method,
-        sampling: "pixels",
+        sampling: scene.integration.sampling(),
         fps: speed.fps,
         kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
         evaluations: speed.cost.evaluations,

@@ -139,6 +139,34 @@ impl<T: Pod> DeviceBuffer<T> {
         Ok(())
     }
 
+    /// Copies `data` to the first elements before the next command of the queue begins, without waiting.
+    pub(super) fn write_static(&mut self, compute: &Compute, data: &'static [T]) -> Result<()> {
+        self.check_len(compute, "clEnqueueWriteBuffer", data.len())?;
+        // SAFETY: the data fits into the buffer and is never freed.
+        unsafe {
+            compute
+                .queue
+                .enqueue_write_buffer(&mut self.buffer, CL_FALSE, 0, data, &[])
+        }
+        .map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))?;
+        Ok(())
+    }
+
+    /// Copies the first elements to `target` after all earlier commands of the queue, without waiting.
+    ///
+    /// # Safety
+    /// Until the event is over, the target must neither be used nor freed.
+    pub(super) unsafe fn begin_read(&self, compute: &Compute, target: &mut [T]) -> Result<Event> {
+        self.check_len(compute, "clEnqueueReadBuffer", target.len())?;
+        // SAFETY: the target is no longer than the buffer; the caller leaves it alone.
+        unsafe {
+            compute
+                .queue
+                .enqueue_read_buffer(&self.buffer, CL_FALSE, 0, target, &[])
+        }
+        .map_err(failed(&compute.device.name, "clEnqueueReadBuffer"))
+    }
+
     pub(super) fn handle(&self) -> cl_mem {
         self.buffer.get()
     }

@@ -6,6 +6,7 @@ use opencl3::kernel::Kernel;
 
 use super::Compute;
 use super::program::{BuildOptions, Program};
+use super::tiles;
 use crate::error::{Error, Result};
 use crate::pack::Rule;
 use crate::scene::Method;
@@ -16,8 +17,18 @@ pub(super) struct Task {
     pub method: Variant,
     /// Which kinds of source the scene has, in the order of [`KIND_OPTIONS`].
     pub kinds: [bool; 4],
-    /// Single rays instead of an image's.
-    pub has_rays: bool,
+    pub rays: Rays,
+}
+
+/// Which rays a kernel takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Rays {
+    /// Every pixel's.
+    Pixels,
+    /// A few of every tile, more next to cores.
+    Tiles,
+    /// Those of a list.
+    Listed,
 }
 
 /// What the kernels' compiler is told of the kinds of source that there are.
@@ -74,13 +85,17 @@ impl Kernels {
                 definitions += option;
             }
         }
+        if task.rays == Rays::Tiles {
+            definitions += &tiles::definitions();
+        }
         let options = BuildOptions {
             extra: format!("{definitions} {}", options.extra),
             ..options.clone()
         };
-        let (file, name) = match task.has_rays {
-            false => ("render.cl", "render"),
-            true => ("trace.cl", "trace"),
+        let (file, name) = match task.rays {
+            Rays::Pixels => ("render.cl", "render"),
+            Rays::Tiles => ("tiles.cl", "tiles"),
+            Rays::Listed => ("trace.cl", "trace"),
         };
         let program = Program::build(compute, &[file], &options)?;
         self.0.insert(task, program.kernel(name)?);

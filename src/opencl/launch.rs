@@ -31,7 +31,7 @@ impl Pace {
 
     /// Begins a frame: what was measured holds for scenes of the same kinds of sources.
     pub(super) fn begin(&mut self, sources: &Sources) {
-        let kinds = counts(sources).map(|count| count > 0);
+        let kinds = source_counts(sources).map(|count| count > 0);
         if kinds != self.kinds {
             *self = Self {
                 kinds,
@@ -57,13 +57,16 @@ impl Pace {
         let evaluations = f64::from(work.node_count) * work.source_count.max(1) as f64;
         let affordable = self.evaluations / evaluations;
         let pixels = affordable.min(f64::from(left)) as u32;
-        pixels.max(work.fewest_pixels).min(left)
+        let grains = pixels.max(work.fewest_pixels).div_ceil(work.grain);
+        let most = (work.most_pixels / work.grain).max(1);
+        grains.min(most).saturating_mul(work.grain).min(left)
     }
 
     /// How many of the next `left` sources to launch on so many pixels: up to twice the pace, rather than a second
     /// launch for a small rest.
     pub(super) fn sources(&self, work: &Work, pixels: u32, left: u64) -> u64 {
         let affordable = self.evaluations / (f64::from(work.node_count) * f64::from(pixels));
+        let left = left.min(work.most_sources);
         if left as f64 <= 2.0 * affordable {
             left
         } else {
@@ -96,10 +99,15 @@ pub(super) struct Work {
     pub source_count: u64,
     /// Below this many pixels a launch leaves the device idle.
     pub fewest_pixels: u32,
+    /// Pixels of a launch are a multiple of this, but for the last one's.
+    pub grain: u32,
+    /// Above this many pixels, and this many sources, a launch takes too much memory.
+    pub most_pixels: u32,
+    pub most_sources: u64,
 }
 
 /// Numbers of spheres, cylinders, tori and curves.
-pub(super) fn counts(sources: &Sources) -> [u64; 4] {
+pub(super) fn source_counts(sources: &Sources) -> [u64; 4] {
     [
         sources.spheres.len() as u64,
         sources.cylinders.len() as u64,
@@ -109,34 +117,44 @@ pub(super) fn counts(sources: &Sources) -> [u64; 4] {
 }
 
 pub(super) fn source_count(sources: &Sources) -> u64 {
-    counts(sources).iter().sum()
+    source_counts(sources).iter().sum()
+}
+
+/// Sources of each kind in a part, as ranges of the lists.
+fn ranges(part: &Part, sources: &Sources) -> [Range<u32>; 4] {
+    let mut begin_of_kind = 0;
+    source_counts(sources).map(|count| {
+        let clip =
+            |at: u64| (at.clamp(begin_of_kind, begin_of_kind + count) - begin_of_kind) as u32;
+        let range = clip(part.sources.start)..clip(part.sources.end);
+        begin_of_kind += count;
+        range
+    })
+}
+
+/// Words of 32 sources that hold a bit for each source of a part; each kind begins with a new word.
+pub(super) fn word_count(part: &Part, sources: &Sources) -> u32 {
+    let words = |range: &Range<u32>| (range.len() as u32).div_ceil(32);
+    ranges(part, sources).iter().map(words).sum()
 }
 
 /// The launch struct of a part; `slot` is where its first pixel goes in the output buffer.
 pub(super) fn launch(part: &Part, slot: u32, sources: &Sources, node_count: u32) -> layout::Launch {
-    let mut begin_of_kind = 0;
-    let ranges = counts(sources).map(|count| {
-        let clip =
-            |at: u64| (at.clamp(begin_of_kind, begin_of_kind + count) - begin_of_kind) as u32;
-        let range = (clip(part.sources.start), clip(part.sources.end));
-        begin_of_kind += count;
-        range
-    });
-    let [spheres, cylinders, tori, curves] = ranges;
+    let [spheres, cylinders, tori, curves] = ranges(part, sources);
     layout::Launch {
         first: part.pixels.start,
         count: part.pixels.end - part.pixels.start,
         slot,
         accumulate: u32::from(part.sources.start > 0),
         node_count,
-        sphere_begin: spheres.0,
-        sphere_end: spheres.1,
-        cylinder_begin: cylinders.0,
-        cylinder_end: cylinders.1,
-        torus_begin: tori.0,
-        torus_end: tori.1,
-        curve_begin: curves.0,
-        curve_end: curves.1,
+        sphere_begin: spheres.start,
+        sphere_end: spheres.end,
+        cylinder_begin: cylinders.start,
+        cylinder_end: cylinders.end,
+        torus_begin: tori.start,
+        torus_end: tori.end,
+        curve_begin: curves.start,
+        curve_end: curves.end,
         padding_0: 0,
         padding_1: 0,
         padding_2: 0,
@@ -187,6 +205,9 @@ mod tests {
                 node_count,
                 source_count,
                 fewest_pixels: 1024,
+                grain: 1,
+                most_pixels: u32::MAX,
+                most_sources: u64::MAX,
             };
             let parts = frame(pixels, &work, rate);
             let covered: f64 = parts

@@ -4,6 +4,7 @@
 mod affinity;
 mod buffer;
 mod compute;
+mod counts;
 mod discover;
 mod failure;
 mod kernels;
@@ -12,6 +13,7 @@ mod mapped;
 mod program;
 mod renderer;
 mod source;
+mod tiles;
 
 pub use affinity::keep_pocl_threads_apart;
 pub use buffer::{DeviceBuffer, Uploaded};

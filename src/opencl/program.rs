@@ -1,6 +1,7 @@
 //! Builds the kernels for a device, with readable logs, and runs them.
 
 use std::ffi::CString;
+use std::ptr;
 use std::time::Duration;
 
 use bytemuck::Pod;
@@ -10,6 +11,7 @@ use opencl3::kernel::Kernel;
 use opencl3::program::Program as ClProgram;
 
 use super::failure::{code_name, failed};
+use super::counts::{self, Counts};
 use super::{Compute, DeviceBuffer, Uploaded, source};
 use crate::error::{Error, Result};
 use crate::pack::{Rule, layout};
@@ -25,6 +27,8 @@ pub struct BuildOptions {
     pub lanes: Option<u32>,
     /// The quadrature of the method `exact`; `None`: what meets the scene's tolerance.
     pub rule: Option<Rule>,
+    /// Whether the method `exact` counts its nodes, for [`crate::renderer::FrameCost::field_evaluations`].
+    pub counts_nodes: bool,
     /// Further options for the OpenCL compiler.
     pub extra: String,
 }
@@ -65,7 +69,7 @@ impl Program {
         let lanes = options.lanes.unwrap_or(device.lanes);
         let mut program = ClProgram::create_from_source(&compute.context, text)
             .map_err(failed(&device.name, "clCreateProgramWithSource"))?;
-        let flags = compiler_flags(lanes, &options.extra);
+        let flags = compiler_flags(lanes, options);
         let refused = |code: String, log: String| Error::Build {
             device: device.name.clone(),
             code,
@@ -99,14 +103,20 @@ impl Program {
     }
 }
 
-fn compiler_flags(lanes: u32, extra: &str) -> String {
+fn compiler_flags(lanes: u32, options: &BuildOptions) -> String {
     let sizes: String = layout::STRUCTS
         .iter()
         .map(|s| format!(" -D SIZEOF_{}={}", s.name.to_uppercase(), s.size))
         .collect();
     let environment = std::env::var(OPTIONS_VARIABLE).unwrap_or_default();
+    let places = counts::definitions();
+    let extra = &options.extra;
+    let counting = match options.counts_nodes {
+        true => "-D COUNT_NODES ",
+        false => "",
+    };
     format!(
-        "-cl-std=CL1.2 -D LANES={lanes} -D CORE_FLOOR={CORE_FLOOR:e}f{sizes} {extra} {environment}"
+        "-cl-std=CL1.2 -D LANES={lanes} -D CORE_FLOOR={CORE_FLOOR:e}f{sizes} {places} {counting}{extra} {environment}"
     )
     .trim()
     .to_owned()
@@ -133,6 +143,21 @@ impl<T: Pod + PartialEq> Argument for Uploaded<T> {
     }
 }
 
+impl Argument for Counts {
+    fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError> {
+        // SAFETY: as for Uploaded.
+        unsafe { kernel.set_arg(index, &self.handle()) }
+    }
+}
+
+impl<T: Pod> Argument for Option<DeviceBuffer<T>> {
+    fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError> {
+        let handle = self.as_ref().map_or(ptr::null_mut(), DeviceBuffer::handle);
+        // SAFETY: as for Uploaded.
+        unsafe { kernel.set_arg(index, &handle) }
+    }
+}
+
 macro_rules! by_value {
     ($($type:ty),*) => {$(
         impl Argument for $type {
@@ -144,7 +169,7 @@ macro_rules! by_value {
     )*};
 }
 
-by_value!(layout::View, layout::Launch);
+by_value!(layout::View, layout::Launch, layout::TilePass);
 
 /// Sets all arguments of a kernel, in order.
 pub(super) fn set_arguments(

@@ -2,19 +2,23 @@
 
 use std::ops::{ControlFlow, Range};
 
+use std::time::Duration;
+
 use opencl3::event::Event;
 
-use super::kernels::{Kernels, Task, Variant};
-use super::launch::{Pace, Part, Work, counts, launch, source_count};
+use super::counts::{self, Counts};
+use super::kernels::{Kernels, Rays, Task, Variant};
+use super::launch::{Pace, Part, Work, launch, source_count, source_counts};
 use super::mapped::Mapped;
 use super::program::{Argument, BuildOptions, enqueue, run_time, set_arguments};
+use super::tiles::{self, OpenTiles};
 use super::{Compute, DeviceBuffer, OpenClDevice, Uploaded};
 use crate::device::DeviceType;
 use crate::error::{Error, Result};
 use crate::pack::{self, Rule, Sources, layout};
 use crate::ray::{Ray, ViewPlane};
 use crate::renderer::FrameCost;
-use crate::scene::Scene;
+use crate::scene::{Sampling, Scene};
 
 /// A pixel of the output: linear RGBA.
 type Pixel = [f32; 4];
@@ -26,6 +30,8 @@ pub struct OpenClRenderer {
     kernels: Kernels,
     lanes: u32,
     lists: Lists,
+    open_tiles: OpenTiles,
+    counts: Counts,
     pub(super) output: Option<DeviceBuffer<Pixel>>,
     pace: Pace,
     cost: FrameCost,
@@ -34,11 +40,12 @@ pub struct OpenClRenderer {
 
 /// A launch under way.
 struct Launched {
-    event: Event,
+    /// Of each pass.
+    events: Vec<Event>,
+    /// If every pixel takes every source.
     integrals: u64,
+    /// Samples of fields, or an estimate.
     evaluations: f64,
-    /// Whether that is what it took, or an estimate.
-    is_counted: bool,
 }
 
 /// A larger output buffer would gain nothing; 8192x8192 pixels fit.
@@ -62,6 +69,7 @@ struct Job {
     sources: Sources,
     work: Work,
     task: Task,
+    tolerance: f64,
 }
 
 impl OpenClRenderer {
@@ -74,6 +82,8 @@ impl OpenClRenderer {
             kernels: Kernels::default(),
             lanes: options.lanes.unwrap_or(device.lanes),
             lists: Lists::new(),
+            open_tiles: OpenTiles::default(),
+            counts: Counts::default(),
             output: None,
             pace: Pace::new(),
             cost: FrameCost::default(),
@@ -141,9 +151,14 @@ impl OpenClRenderer {
         };
         let task = Task {
             method: Variant::of(scene.integration.method, rule),
-            kinds: counts(&sources).map(|count| count > 0),
-            has_rays: rays.is_some(),
+            kinds: source_counts(&sources).map(|count| count > 0),
+            rays: match (rays, scene.integration.sampling()) {
+                (Some(_), _) => Rays::Listed,
+                (None, Sampling::Tiles) if scene.source_count() > 0 => Rays::Tiles,
+                (None, Sampling::Pixels | Sampling::Tiles) => Rays::Pixels,
+            },
         };
+        let is_tiled = task.rays == Rays::Tiles;
         self.kernels
             .prepare(&self.compute, &self.options, task, &rule)?;
         let nodes = match task.method {
@@ -171,9 +186,13 @@ impl OpenClRenderer {
                 },
                 source_count: source_count(&sources),
                 fewest_pixels: (256 * units).max(1024),
+                grain: if is_tiled { tiles::LARGEST * view.width } else { 1 },
+                most_pixels: if is_tiled { tiles::MOST_PIXELS } else { u32::MAX },
+                most_sources: if is_tiled { tiles::MOST_SOURCES } else { u64::MAX },
             },
             sources,
             task,
+            tolerance: scene.integration.tolerance,
         })
     }
 
@@ -185,7 +204,7 @@ impl OpenClRenderer {
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
         let total = target.len() as f32;
-        let band_len = self.band_len(target.len())?;
+        let band_len = self.band_len(target.len(), job.work.grain)?;
         let mut end = 0;
         self.begin(job);
         for band in target.chunks_mut(band_len) {
@@ -194,7 +213,7 @@ impl OpenClRenderer {
             let mut report = |pixel: u32| progress(pixel as f32 / total);
             let last = self.launch_band(job, begin..end, &mut report)?;
             self.output()?.read(&self.compute, band)?;
-            self.settle(last)?;
+            self.settle(job, last)?;
         }
         self.settle_uploads()
     }
@@ -203,7 +222,7 @@ impl OpenClRenderer {
     pub(crate) fn render_mapped(&mut self, scene: &Scene) -> Result<Mapped<'_>> {
         let job = self.job(scene)?;
         let pixels = scene.image.pixels();
-        if self.band_len(pixels)? < pixels {
+        if self.band_len(pixels, job.work.grain)? < pixels {
             return Err(Error::OutOfMemory(format!(
                 "{}: {}x{} pixels are more than one buffer of the device holds; read the image back instead",
                 self.device().name,
@@ -219,7 +238,7 @@ impl OpenClRenderer {
             pixels,
             renderer: self,
         };
-        mapped.renderer.settle(last)?;
+        mapped.renderer.settle(&job, last)?;
         mapped.renderer.settle_uploads()?;
         Ok(mapped)
     }
@@ -256,7 +275,7 @@ impl OpenClRenderer {
             let mut source = 0;
             loop {
                 // One launch at a time: the pace of the next depends on it, and the queue stays short.
-                self.settle(last.take())?;
+                self.settle(job, last.take())?;
                 let count = self
                     .pace
                     .sources(&job.work, pixels.len() as u32, all - source);
@@ -272,19 +291,25 @@ impl OpenClRenderer {
             }
             pixel = pixels.end;
             if progress(pixel).is_break() {
-                self.settle(last)?;
+                self.settle(job, last)?;
                 return Err(Error::Interrupted);
             }
         }
         Ok(last)
     }
 
-    fn launch(&self, job: &Job, part: &Part, slot: u32) -> Result<Launched> {
-        let kernel = self.kernels.get(job.task)?;
-        let output = self.output()?;
+    fn launch(&mut self, job: &Job, part: &Part, slot: u32) -> Result<Launched> {
+        let passes = match job.task.rays {
+            Rays::Tiles => tiles::passes(part, &job.sources, &job.view, job.tolerance).to_vec(),
+            Rays::Pixels | Rays::Listed => Vec::new(),
+        };
+        self.open_tiles.reserve(&self.compute, &passes)?;
+        if self.counts_in(job) {
+            self.counts.reset(&self.compute)?;
+        }
         let launch = launch(part, slot, &job.sources, job.work.node_count);
         let lists = &self.lists;
-        let mut arguments: Vec<&dyn Argument> = vec![
+        let common: [&dyn Argument; 10] = [
             &job.view,
             &launch,
             &lists.nodes,
@@ -293,12 +318,14 @@ impl OpenClRenderer {
             &lists.tori,
             &lists.curves,
             &lists.spline_pieces,
-            output,
+            &self.counts,
+            self.output()?,
         ];
-        if job.task.has_rays {
-            arguments.push(&lists.rays);
-        }
-        set_arguments(&self.compute, kernel, &arguments)?;
+        let kernel = self.kernels.get(job.task)?;
+        let enqueue = |more: &[&dyn Argument], items: usize, group: usize| {
+            set_arguments(&self.compute, kernel, &[&common, more].concat())?;
+            enqueue(&self.compute, kernel, items, group)
+        };
         // On PoCL groups of 4 to 64 are equally fast, 128 leave a core idle on small images; one work-item for several
         // spans of lanes gains nothing.
         let group = match self.device().device_type {
@@ -306,27 +333,56 @@ impl OpenClRenderer {
             _ => 16,
         };
         let items = part.pixels.len().div_ceil(self.lanes as usize);
+        let OpenTiles { places, light } = &self.open_tiles;
+        let events = match job.task.rays {
+            Rays::Pixels => vec![enqueue(&[], items, group)?],
+            Rays::Listed => vec![enqueue(&[&lists.rays], items, group)?],
+            Rays::Tiles => {
+                let workers = tiles::workers(self.lanes);
+                let enqueue = |pass: &layout::TilePass| {
+                    let items = tiles::groups(pass) * workers;
+                    enqueue(&[pass, places, light], items, workers)
+                };
+                passes.iter().map(enqueue).collect::<Result<_>>()?
+            }
+        };
+        if self.counts_in(job) {
+            self.counts.fetch(&self.compute)?;
+        }
         Ok(Launched {
-            event: enqueue(&self.compute, kernel, items, group)?,
+            events,
             integrals: part.pixels.len() as u64 * (part.sources.end - part.sources.start),
             evaluations: part.evaluations(&job.work),
-            is_counted: job.task.method == Variant::Simpson,
         })
     }
 
+    /// Whether a job's kernels count.
+    fn counts_in(&self, job: &Job) -> bool {
+        job.task.rays == Rays::Tiles || self.options.counts_nodes
+    }
+
     /// Waits for a launch and learns from it.
-    fn settle(&mut self, launched: Option<Launched>) -> Result<()> {
+    fn settle(&mut self, job: &Job, launched: Option<Launched>) -> Result<()> {
         let Some(launched) = launched else {
             return Ok(());
         };
-        let time = run_time(&self.compute, &launched.event)?;
-        self.pace.measured(launched.evaluations, time);
-        self.cost.kernel += time;
-        self.cost.launches += 1;
-        self.cost.evaluations += launched.integrals;
-        if launched.is_counted {
-            self.cost.field_evaluations += launched.evaluations as u64;
+        let mut time = Duration::ZERO;
+        for event in &launched.events {
+            time += run_time(&self.compute, event)?;
         }
+        self.pace.measured(launched.evaluations, time);
+        let cost = &mut self.cost;
+        cost.kernel += time;
+        cost.launches += launched.events.len() as u32;
+        let counted = self.counts.settle(&self.compute)?;
+        cost.evaluations += match job.task.rays {
+            Rays::Tiles => u64::from(counted[counts::INTEGRALS]),
+            Rays::Pixels | Rays::Listed => launched.integrals,
+        };
+        cost.field_evaluations += match job.task.method {
+            Variant::Simpson => launched.evaluations as u64,
+            Variant::Exact { .. } => u64::from(counted[counts::NODES]),
+        };
         Ok(())
     }
 
@@ -337,16 +393,18 @@ impl OpenClRenderer {
             .ok_or_else(|| Error::OutOfMemory("there is no output buffer".to_owned()))
     }
 
-    /// Makes sure of an output buffer for `pixels` pixels, or for as many as the device's limits allow.
-    fn band_len(&mut self, pixels: usize) -> Result<usize> {
+    /// Makes sure of an output buffer for `pixels` pixels, or for as many as the device's limits allow, a multiple of
+    /// `grain`.
+    fn band_len(&mut self, pixels: usize, grain: u32) -> Result<usize> {
         let device = &self.compute.device;
         // A quarter of the memory leaves room for the sources and for everyone else.
         let bytes = device
             .max_allocation_bytes
             .min(device.memory_bytes / 4)
             .min(MOST_BAND_BYTES);
-        let most = (bytes as usize / size_of::<Pixel>()).max(1);
-        let wanted = pixels.min(most);
+        let grain = grain as usize;
+        let grains = (bytes as usize / size_of::<Pixel>() / grain).max(1);
+        let wanted = pixels.min(grains * grain);
         match &self.output {
             Some(output) if output.len() >= wanted => {}
             _ => {

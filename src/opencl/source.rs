@@ -35,8 +35,11 @@ embed!(
     "peaks/curve.h",
     "peaks/curve_panels.h",
     "radiance.h",
+    "clearance.h",
     "store.h",
+    "tile.h",
     "render.cl",
+    "tiles.cl",
     "trace.cl",
 );
 

@@ -71,6 +71,22 @@ device_structs! {
         padding_1: u32 = 56,
         padding_2: u32 = 60,
     }
+    /// One pass over tiles of one size.
+    TilePass [52] {
+        size: u32 = 0,
+        inner: u32 = 4,
+        parent_inner: u32 = 8,
+        level: u32 = 12,
+        is_last: u32 = 16,
+        columns: u32 = 20,
+        tile_count: u32 = 24,
+        read_from: u32 = 28,
+        write_to: u32 = 32,
+        word_count: u32 = 36,
+        pixel_step: f32 = 40,
+        most_odd: f32 = 44,
+        most_even: f32 = 48,
+    }
     /// A ray that is no pixel's.
     RayRecord [64] {
         origin: [f32; 4] = 0,

@@ -164,6 +164,8 @@ pub struct Integration {
     pub divisions: u32,
     /// Exact: relative error aimed at.
     pub tolerance: f64,
+    /// Exact: where integrals are taken; `None`: tiles.
+    pub sampling: Option<Sampling>,
     /// Over what the integral runs.
     pub measure: Measure,
     /// Softening radius epsilon: the squared distance to every core grows by its square.
@@ -176,8 +178,19 @@ impl Default for Integration {
             method: Method::Exact,
             divisions: 200,
             tolerance: 1e-3,
+            sampling: None,
             measure: Measure::Parameter,
             softening: 0.0,
+        }
+    }
+}
+
+impl Integration {
+    /// Where integrals are taken. Simpson's rule takes every pixel.
+    pub fn sampling(&self) -> Sampling {
+        match self.method {
+            Method::Simpson => Sampling::Pixels,
+            Method::Exact => self.sampling.unwrap_or(Sampling::Tiles),
         }
     }
 }
@@ -190,6 +203,17 @@ pub enum Method {
     Simpson,
     /// The integral itself, to a stated relative error.
     Exact,
+}
+
+/// Where integrals are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sampling {
+    /// At every pixel.
+    Pixels,
+    /// Of each source, at every pixel near its core; elsewhere at a few pixels of a tile, the others interpolated within
+    /// the tolerance. The built-in reference takes every pixel.
+    Tiles,
 }
 
 /// Over what the integral runs.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Camera, Curve, ImageSize, Integration, Measure, Scene};
+use super::{Camera, Curve, ImageSize, Integration, Measure, Method, Sampling, Scene};
 use crate::error::{Result, SceneError};
 use crate::reference::CORE_FLOOR;
 
@@ -138,6 +138,12 @@ fn check_integration(integration: &Integration) -> Checked {
         return fault(
             "integration.divisions",
             format!("{divisions}; Simpson's rule needs an even number from 2 to 65536"),
+        );
+    }
+    if integration.method == Method::Simpson && integration.sampling == Some(Sampling::Tiles) {
+        return fault(
+            "integration.sampling",
+            "tiles are for the method \"exact\"; Simpson's rule takes every pixel",
         );
     }
     finite("integration.tolerance", integration.tolerance)?;

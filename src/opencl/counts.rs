@@ -1,0 +1,82 @@
+//! What kernels count while they work.
+
+use std::ptr;
+
+use opencl3::event::Event;
+use opencl3::types::cl_mem;
+
+use super::failure::failed;
+use super::{Compute, DeviceBuffer};
+use crate::error::Result;
+
+/// Tiles: integrals, pairs of a ray and a source.
+pub(super) const INTEGRALS: usize = 0;
+/// Method exact, if the kernels are built to count them: nodes of quadratures.
+pub(super) const NODES: usize = 1;
+/// Tiles that a pass left open; a number for each pass.
+const OPEN_TILES: usize = 2;
+const LEN: usize = 8;
+
+/// The numbers' places, for the kernels' compiler.
+pub(super) fn definitions() -> String {
+    format!(
+        "-D COUNT_INTEGRALS={INTEGRALS} -D COUNT_NODES_TAKEN={NODES} -D COUNT_OPEN_TILES={OPEN_TILES}"
+    )
+}
+
+/// A list of numbers on the device, set to 0 before kernels run and read back after them, both without waiting.
+#[derive(Debug, Default)]
+pub(super) struct Counts {
+    buffer: Option<DeviceBuffer<u32>>,
+    /// Where the copy under way goes to.
+    values: Box<[u32; LEN]>,
+    under_way: Option<Event>,
+}
+
+impl Counts {
+    /// Sets all numbers to 0 before the next command of the queue begins.
+    pub(super) fn reset(&mut self, compute: &Compute) -> Result<()> {
+        self.settle(compute)?;
+        let buffer = match self.buffer.take() {
+            Some(buffer) => buffer,
+            None => DeviceBuffer::new(compute, "the counts", LEN)?,
+        };
+        self.buffer.insert(buffer).write_static(compute, &[0; LEN])
+    }
+
+    /// Reads the numbers after all earlier commands of the queue.
+    pub(super) fn fetch(&mut self, compute: &Compute) -> Result<()> {
+        self.settle(compute)?;
+        if let Some(buffer) = &self.buffer {
+            // SAFETY: `values` has room for the buffer's numbers; it is neither read nor freed before the event is over.
+            let event = unsafe { buffer.begin_read(compute, self.values.as_mut_slice()) }?;
+            self.under_way = Some(event);
+        }
+        Ok(())
+    }
+
+    /// Waits for what is under way: the numbers last fetched.
+    pub(super) fn settle(&mut self, compute: &Compute) -> Result<&[u32; LEN]> {
+        if let Some(event) = self.under_way.take() {
+            event
+                .wait()
+                .map_err(failed(&compute.device.name, "clEnqueueReadBuffer"))?;
+        }
+        Ok(&self.values)
+    }
+
+    pub(super) fn handle(&self) -> cl_mem {
+        self.buffer
+            .as_ref()
+            .map_or(ptr::null_mut(), DeviceBuffer::handle)
+    }
+}
+
+impl Drop for Counts {
+    fn drop(&mut self) {
+        if let Some(event) = self.under_way.take() {
+            // The copy writes to `values`: it must be over before they are freed, however it ended.
+            let _ = event.wait();
+        }
+    }
+}

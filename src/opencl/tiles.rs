@@ -1,0 +1,129 @@
+//! The passes over an image's tiles, the largest first.
+
+use std::ops::Range;
+
+use super::launch::{Part, word_count};
+use super::{Compute, DeviceBuffer};
+use crate::error::Result;
+use crate::pack::{Sources, layout};
+
+/// Sides of the tiles of each pass, pixels.
+const SIZES: [u32; 4] = [64, 32, 16, 8];
+
+/// The largest tile's side, pixels.
+pub(super) const LARGEST: u32 = SIZES[0];
+
+/// Pixels of one launch, so that the list of open tiles stays small; a frame of 3840x2160 fits.
+pub(super) const MOST_PIXELS: u32 = 1 << 23;
+
+/// Words of 32 sources of one launch.
+const MOST_WORDS: u32 = 128;
+
+/// Sources of one launch: each kind begins with a new word.
+pub(super) const MOST_SOURCES: u64 = 32 * (MOST_WORDS as u64 - 4);
+
+/// Groups of work-items of one launch, which share its tiles: many more than any device works on at a time.
+const MOST_GROUPS: usize = 4096;
+
+/// What a tile's light takes: three channels at 16 nodes.
+const LIGHT: usize = 48;
+
+/// Column and row of an open tile, before its words of sources.
+const PLACE: usize = 2;
+
+/// For the kernels' compiler: calls instead of copies of what is needed in two places.
+pub(super) fn definitions() -> String {
+    format!(" -D PER_RAY= -D MOST_WORDS={MOST_WORDS}")
+}
+
+/// Tiles that a pass leaves open, on the device.
+#[derive(Debug, Default)]
+pub(super) struct OpenTiles {
+    pub(super) places: Option<DeviceBuffer<u32>>,
+    pub(super) light: Option<DeviceBuffer<f32>>,
+}
+
+impl OpenTiles {
+    /// Makes room for the passes of a launch.
+    pub(super) fn reserve(&mut self, compute: &Compute, passes: &[layout::TilePass]) -> Result<()> {
+        let most = passes.iter().map(|pass| pass.write_to).max().unwrap_or(0) as usize;
+        let words = passes.first().map_or(0, |pass| pass.word_count) as usize;
+        let what = "the list of open tiles";
+        reserve(&mut self.places, compute, what, most * (PLACE + words))?;
+        reserve(&mut self.light, compute, what, most * LIGHT)
+    }
+}
+
+fn reserve<T: bytemuck::Pod>(
+    buffer: &mut Option<DeviceBuffer<T>>,
+    compute: &Compute,
+    what: &str,
+    len: usize,
+) -> Result<()> {
+    if buffer.as_ref().is_none_or(|buffer| buffer.len() < len) {
+        *buffer = None;
+        *buffer = Some(DeviceBuffer::new(compute, what, len)?);
+    }
+    Ok(())
+}
+
+/// How smooth an interpolation must be for a tolerance: the largest odd and even highest Chebyshev coefficient, of the
+/// least value. Of a function that is analytic beside the tile the coefficients fall as `rho^-k`: after `rho^-2` and
+/// `rho^-3`, the highest of four nodes, `rho^-4` is missing.
+fn most_coefficients(tolerance: f64) -> (f32, f32) {
+    let missing = 0.1 * tolerance;
+    (missing.powf(0.75) as f32, 0.4 * missing.sqrt() as f32)
+}
+
+/// The passes over the tiles of a part: whole rows of an image of this width.
+pub(super) fn passes(
+    part: &Part,
+    sources: &Sources,
+    view: &layout::View,
+    tolerance: f64,
+) -> [layout::TilePass; SIZES.len()] {
+    let rows = part.pixels.len() as u32 / view.width;
+    let columns = view.width.div_ceil(LARGEST);
+    let tile_count = columns * rows.div_ceil(LARGEST);
+    let (most_odd, most_even) = most_coefficients(tolerance);
+    let [x, y, z, _] = view.row_step;
+    let mut written: Range<u32> = 0..0;
+    let mut level = 0;
+    SIZES.map(|size| {
+        let is_last = level + 1 == SIZES.len() as u32;
+        let read_from = written.start;
+        written = written.end..written.end + (tile_count << (2 * level));
+        let pass = layout::TilePass {
+            size,
+            inner: inner(size),
+            parent_inner: inner(2 * size),
+            level,
+            is_last: u32::from(is_last),
+            columns,
+            tile_count,
+            read_from,
+            write_to: written.start,
+            word_count: word_count(part, sources),
+            pixel_step: glam::Vec3::new(x, y, z).length(),
+            most_odd,
+            most_even,
+        };
+        level += 1;
+        pass
+    })
+}
+
+/// Work-items of a group, which share the 16 nodes of a tile.
+pub(super) fn workers(lanes: u32) -> usize {
+    16 / lanes as usize
+}
+
+/// Groups of work-items for a pass.
+pub(super) fn groups(pass: &layout::TilePass) -> usize {
+    ((pass.tile_count as usize) << (2 * pass.level)).min(MOST_GROUPS)
+}
+
+/// The second node's pixel: the Chebyshev zeros stretched to the tile's first and last pixel lie 0.29 from them.
+fn inner(size: u32) -> u32 {
+    9 * size / 32
+}
