@@ -106,15 +106,6 @@ void scatter(const floatv value, float *const lanes) {
 #endif
 }
 
-// The same for a group of work-items: LANES values of this one's.
-void share(const floatv value, __local float *const lanes) {
-#if LANES == 1
-    lanes[0] = value;
-#else
-    JOIN(vstore, LANES)(value, 0, lanes);
-#endif
-}
-
 // One value a lane, from memory that the lanes do not share evenly.
 floatv gather(__global const float *const values, const intv index) {
 #if LANES == 1

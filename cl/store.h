@@ -8,33 +8,43 @@
 #endif
 
 #if LANES > 1
-// Four pixels from the channels of four lanes: red with green and blue with alpha, then pairs with pairs. Said element
-// by element the same costs a torus of 64 divisions a tenth of its frame.
-void store_four_pixels(__global float *const values, const float4 red, const float4 green, const float4 blue) {
-    float8 red_green = (float8)(0.0f), blue_alpha = (float8)(1.0f);
+#define HALF_FLOATS JOIN(float, HALF_LANES)
+#if LANES == 16
+#define HALF_LANES 8
+typedef ulong8 pairv;
+#define as_pairv as_ulong8
+#elif LANES == 8
+#define HALF_LANES 4
+typedef ulong4 pairv;
+#define as_pairv as_ulong4
+#else
+#define HALF_LANES 2
+typedef ulong2 pairv;
+#define as_pairv as_ulong2
+#endif
+
+// Half the lanes' pixels from their channels: red with green and blue with alpha, then pairs with pairs. Said element by
+// element the same costs a torus of 64 divisions a tenth of its frame.
+void store_half(__global float4 *const pixels, const HALF_FLOATS red, const HALF_FLOATS green, const HALF_FLOATS blue) {
+    floatv red_green = splat(0.0f), blue_alpha = splat(1.0f);
     red_green.even = red, red_green.odd = green, blue_alpha.even = blue;
-    ulong8 pixels = (ulong8)(0);
-    pixels.even = as_ulong4(red_green), pixels.odd = as_ulong4(blue_alpha);
-    vstore16(as_float16(pixels), 0, values);
+    pairv first = (pairv)(0), second = (pairv)(0);
+    first.even = as_pairv(red_green).lo, first.odd = as_pairv(blue_alpha).lo;
+    second.even = as_pairv(red_green).hi, second.odd = as_pairv(blue_alpha).hi;
+    __global float *const values = (__global float *)pixels;
+    JOIN(vstore, LANES)(as_floatv(first), 0, values);
+    JOIN(vstore, LANES)(as_floatv(second), 1, values);
 }
 #endif
 
 // Writes all lanes, half of them in each of two places.
 INLINE void store_all_pixels(__global float4 *const first_half, __global float4 *const second_half,
                              const float3v color) {
-    __global float *const first = (__global float *)first_half, *const second = (__global float *)second_half;
 #if LANES == 1
     first_half[0] = (float4)(color.x, color.y, color.z, 1.0f);
-#elif LANES == 4
-    store_four_pixels(first, color.x, color.y, color.z);
-#elif LANES == 8
-    store_four_pixels(first, color.x.lo, color.y.lo, color.z.lo);
-    store_four_pixels(second, color.x.hi, color.y.hi, color.z.hi);
 #else
-    store_four_pixels(first, color.x.lo.lo, color.y.lo.lo, color.z.lo.lo);
-    store_four_pixels(first + 16, color.x.lo.hi, color.y.lo.hi, color.z.lo.hi);
-    store_four_pixels(second, color.x.hi.lo, color.y.hi.lo, color.z.hi.lo);
-    store_four_pixels(second + 16, color.x.hi.hi, color.y.hi.hi, color.z.hi.hi);
+    store_half(first_half, color.x.lo, color.y.lo, color.z.lo);
+    store_half(second_half, color.x.hi, color.y.hi, color.z.hi);
 #endif
 }
 

@@ -9,15 +9,23 @@
 // Tiles that a pass leaves open, for the next one. Of each: its column and row, a bit for each source that is not yet
 // in its light, and the light of all others at its nodes.
 #define OPEN_TILE_PLACE 2u
-#define LIGHT_OF_TILE (3u * TILE_LANES)
+#define LIGHT_OF_TILE (3u * TILE_RAYS)
 
 // Closer to a core than this many times a tile's side its light is taken for rough without a look.
+#ifndef LEAST_CLEARANCE
 #define LEAST_CLEARANCE 0.5f
+#endif
+
+// What an interpolation may be off by where it is tested; a test of the test gives up on it.
+#ifndef MOST_ERROR
+#define MOST_ERROR pass->most_error
+#endif
 
 // What a group of work-items holds of a tile.
 typedef struct {
-    float integrals[TILE_LANES];
-    float light[LIGHT_OF_TILE]; // red, green, blue
+    float integrals[TILE_RAYS]; // of one source at the nodes
+    float excess[TILE_RAYS];    // of the error where it is tested
+    float light[LIGHT_OF_TILE]; // red, green, blue of all settled sources at the nodes
     uint open[MOST_WORDS];
     uint slot;
 } TileMemory;
@@ -35,27 +43,49 @@ uint bit_number(const uint bit) {
     return 31u - clz(bit);
 }
 
-// The sources of one kind that are open in the tile: those smooth on it give their light at its nodes.
-#define SETTLE(kind, list)                                                                                             \
+// The light of one source at the nodes, given to the tile's light if it is smooth on the tile. Whether it is.
+#define DEFINE_SETTLE(kind, list)                                                                                      \
+    INLINE bool settle_##kind(const TileRays *const rays, const TilePass *const pass, const Sources *const sources,    \
+                              const uint index, const Quadrature *const quadrature, __local TileMemory *const memory,  \
+                              uint *const integrals) {                                                                 \
+        meet();                                                                                                        \
+        for (uint round = 0; round < TILE_ROUNDS; ++round) {                                                           \
+            const Ray *const ray = &rays->nodes[round];                                                                \
+            const floatv clearance2 = kind##_clearance2(ray, sources, index, pass->pixel_step);                        \
+            const bool is_near = any_lane(clearance2 < least_clearance2(pass));                                        \
+            *integrals += is_near ? 0 : LANES;                                                                         \
+            show(is_near ? splat(NAN) : exact_##kind(ray, sources, index, quadrature), first_ray(round),               \
+                 memory->integrals);                                                                                   \
+        }                                                                                                              \
+        meet();                                                                                                        \
+        if (!seems_smooth(pass, memory->integrals))                                                                    \
+            return false;                                                                                              \
+        for (uint round = 0; round < TILE_ROUNDS; ++round) {                                                           \
+            const floatv truth = exact_##kind(&rays->tests[round], sources, index, quadrature);                        \
+            const floatv seen = interpolate(memory->integrals, &rays->down[round], &rays->across[round]);              \
+            *integrals += LANES;                                                                                       \
+            show(fabs(seen - truth) - MOST_ERROR * fabs(truth), first_ray(round), memory->excess);                     \
+        }                                                                                                              \
+        meet();                                                                                                        \
+        if (!none_is_positive(memory->excess))                                                                         \
+            return false;                                                                                              \
+        const float4 emission = sources->list[index].emission;                                                         \
+        for (uint round = 0; round < TILE_ROUNDS; ++round)                                                             \
+            add_light(emission, shown(first_ray(round), memory->integrals), first_ray(round), memory->light);          \
+        return true;                                                                                                   \
+    }
+
+// All sources of one kind that are open in the tile.
+#define SETTLE(kind)                                                                                                   \
     for (uint begin = launch->kind##_begin; begin < launch->kind##_end; begin += 32u, ++word) {                        \
         uint left = parent_open ? parent_open[word] : first_bits(launch->kind##_end - begin), open = 0;                \
         for (; left != 0; left &= left - 1u) {                                                                         \
             const uint bit = lowest_bit(left), i = begin + bit_number(bit);                                            \
-            const floatv clearance2 = kind##_clearance2(&ray, sources, i, pass->pixel_step);                           \
-            floatv integral = splat(NAN);                                                                              \
-            if (!any_lane(clearance2 < least_clearance2)) {                                                            \
-                integral = exact_##kind(&ray, sources, i, quadrature);                                                 \
-                integrals += LANES;                                                                                    \
-            }                                                                                                          \
-            meet();                                                                                                    \
-            share(integral, memory->integrals + get_local_id(0) * LANES);                                              \
-            meet();                                                                                                    \
-            if (is_smooth(pass, memory->integrals))                                                                    \
-                light = fma3(uniform3(sources->list[i].emission), integral, light);                                    \
-            else                                                                                                       \
+            if (!settle_##kind(&rays, pass, sources, i, quadrature, memory, &integrals))                               \
                 open |= bit;                                                                                           \
         }                                                                                                              \
-        memory->open[word] = open;                                                                                     \
+        if (get_local_id(0) == 0)                                                                                      \
+            memory->open[word] = open;                                                                                 \
         is_open |= open;                                                                                               \
     }
 
@@ -70,52 +100,96 @@ uint bit_number(const uint bit) {
         }                                                                                                              \
     }
 
-// Linear RGB at the nodes, from the tile that this one is a quarter of.
-INLINE float3v inherited_light(const TilePass *const pass, const Tile *const tile, const Tile *const parent,
-                               __local const float *const light) {
+// The rays of a tile: through its nodes, and through the points where interpolation is tested, with the weights of the
+// nodes there.
+typedef struct {
+    Ray nodes[TILE_ROUNDS], tests[TILE_ROUNDS];
+    Basis across[TILE_ROUNDS], down[TILE_ROUNDS];
+} TileRays;
+
+INLINE TileRays rays_of_tile(const View *const view, const TilePass *const pass, const Tile *const tile) {
+    TileRays rays;
+    for (uint round = 0; round < TILE_ROUNDS; ++round) {
+        const uintv ray = first_ray(round) + LANE_NUMBERS, column = ray & 3u, row = ray >> 2u;
+        rays.nodes[round] =
+            ray_through(view, tile->column + node_place(pass, column), tile->row + node_place(pass, row));
+        const uintv test_column = test_place(pass, column), test_row = test_place(pass, row);
+        rays.tests[round] = ray_through(view, tile->column + test_column, tile->row + test_row);
+        rays.across[round] = basis_at(pass, test_column);
+        rays.down[round] = basis_at(pass, test_row);
+    }
+    return rays;
+}
+
+float least_clearance2(const TilePass *const pass) {
+    const float least_clearance = LEAST_CLEARANCE * (float)pass->size;
+    return least_clearance * least_clearance;
+}
+
+// Red, green and blue of some rays of a tile.
+void show_light(const float3v light, const uint ray, __local float *const all) {
+    show(light.x, ray, all);
+    show(light.y, ray, all + TILE_RAYS);
+    show(light.z, ray, all + 2u * TILE_RAYS);
+}
+
+void add_light(const float4 emission, const floatv integral, const uint ray, __local float *const all) {
+    const float3v before = {shown(ray, all), shown(ray, all + TILE_RAYS), shown(ray, all + 2u * TILE_RAYS)};
+    show_light(fma3(uniform3(emission), integral, before), ray, all);
+}
+
+#ifdef SPHERES
+DEFINE_SETTLE(sphere, spheres)
+#endif
+#ifdef CYLINDERS
+DEFINE_SETTLE(cylinder, cylinders)
+#endif
+#ifdef TORI
+DEFINE_SETTLE(torus, tori)
+#endif
+#ifdef CURVES
+DEFINE_SETTLE(curve, curves)
+#endif
+
+// The light at the nodes of a tile, from that at the nodes of the tile that it is a quarter of.
+INLINE void inherit_light(const TilePass *const pass, const Tile *const tile, const Tile *const parent,
+                          __local float *const light) {
     TilePass of_parent = *pass;
     of_parent.size = 2u * pass->size;
     of_parent.inner = pass->parent_inner;
-    const uintv node = lanes_in_group();
-    const Basis across = basis_at(&of_parent, node_place(pass, node & 3u) + (tile->column - parent->column));
-    const Basis down = basis_at(&of_parent, node_place(pass, node >> 2u) + (tile->row - parent->row));
-    floatv red[NODES_A_SIDE], green[NODES_A_SIDE], blue[NODES_A_SIDE];
-    interpolate_down(light, &down, red);
-    interpolate_down(light + TILE_LANES, &down, green);
-    interpolate_down(light + 2u * TILE_LANES, &down, blue);
-    const float3v inherited = {interpolate_across(red, &across), interpolate_across(green, &across),
-                               interpolate_across(blue, &across)};
-    return inherited;
+    float3v inherited[TILE_ROUNDS];
+    for (uint round = 0; round < TILE_ROUNDS; ++round) {
+        const uintv ray = first_ray(round) + LANE_NUMBERS;
+        const uintv column = node_place(pass, ray & 3u) + (tile->column - parent->column);
+        const uintv row = node_place(pass, ray >> 2u) + (tile->row - parent->row);
+        const Basis across = basis_at(&of_parent, column), down = basis_at(&of_parent, row);
+        inherited[round].x = interpolate(light, &down, &across);
+        inherited[round].y = interpolate(light + TILE_RAYS, &down, &across);
+        inherited[round].z = interpolate(light + 2u * TILE_RAYS, &down, &across);
+    }
+    meet();
+    for (uint round = 0; round < TILE_ROUNDS; ++round)
+        show_light(inherited[round], first_ray(round), light);
 }
 
 // Gives every source that is smooth on the tile to its light. Whether any is not.
 INLINE bool settle_sources(const View *const view, const Launch *const launch, const TilePass *const pass,
                            const Sources *const sources, const Quadrature *const quadrature, const Tile *const tile,
-                           __global const uint *const parent_open, const float3v inherited,
-                           __local TileMemory *const memory) {
-    const uintv node = lanes_in_group();
-    const uintv column = tile->column + node_place(pass, node & 3u), row = tile->row + node_place(pass, node >> 2u);
-    const Ray ray = ray_through(view, column, row);
-    const float least_clearance = LEAST_CLEARANCE * (float)pass->size;
-    const float least_clearance2 = least_clearance * least_clearance;
-    float3v light = inherited;
+                           __global const uint *const parent_open, __local TileMemory *const memory) {
+    const TileRays rays = rays_of_tile(view, pass, tile);
     uint word = 0, is_open = 0, integrals = 0;
 #ifdef SPHERES
-    SETTLE(sphere, spheres)
+    SETTLE(sphere)
 #endif
 #ifdef CYLINDERS
-    SETTLE(cylinder, cylinders)
+    SETTLE(cylinder)
 #endif
 #ifdef TORI
-    SETTLE(torus, tori)
+    SETTLE(torus)
 #endif
 #ifdef CURVES
-    SETTLE(curve, curves)
+    SETTLE(curve)
 #endif
-    __local float *const mine = memory->light + get_local_id(0) * LANES;
-    share(light.x, mine);
-    share(light.y, mine + TILE_LANES);
-    share(light.z, mine + 2u * TILE_LANES);
     meet();
     atomic_add(quadrature->counts + COUNT_INTEGRALS, integrals);
     return is_open != 0;
@@ -125,40 +199,42 @@ INLINE bool settle_sources(const View *const view, const Launch *const launch, c
 INLINE void paint_tile(const View *const view, const Launch *const launch, const TilePass *const pass,
                        const Sources *const sources, const Quadrature *const quadrature, const Tile *const tile,
                        const bool is_open, __local const TileMemory *const memory, __global float4 *const image) {
-    const uintv lane = lanes_in_group();
-    const uint rows = launch->first / view->width, end_row = rows + launch->count / view->width;
+    const uint end_row = (launch->first + launch->count) / view->width;
     uint integrals = 0;
     for (uint y = 0; y < pass->size && tile->row + y < end_row; y += BLOCK_HEIGHT) {
-        const uintv in_rows = y + lane / BLOCK_WIDTH;
-        const Basis down = basis_at(pass, in_rows);
-        floatv red[NODES_A_SIDE], green[NODES_A_SIDE], blue[NODES_A_SIDE];
-        interpolate_down(memory->light, &down, red);
-        interpolate_down(memory->light + TILE_LANES, &down, green);
-        interpolate_down(memory->light + 2u * TILE_LANES, &down, blue);
-        for (uint x = 0; x < pass->size && tile->column + x < view->width; x += BLOCK_WIDTH) {
-            const uintv in_columns = x + lane % BLOCK_WIDTH;
-            const Basis across = basis_at(pass, in_columns);
-            float3v radiance = {interpolate_across(red, &across), interpolate_across(green, &across),
-                                interpolate_across(blue, &across)};
-            if (is_open) {
-                const Ray ray = ray_through(view, tile->column + in_columns, tile->row + in_rows);
-                uint word = 0;
+        for (uint round = 0; round < TILE_ROUNDS; ++round) {
+            const uintv ray_number = first_ray(round) + LANE_NUMBERS;
+            const uintv row = y + ray_number / BLOCK_WIDTH;
+            const Basis down = basis_at(pass, row);
+            floatv red[NODES_A_SIDE], green[NODES_A_SIDE], blue[NODES_A_SIDE];
+            interpolate_down(memory->light, &down, red);
+            interpolate_down(memory->light + TILE_RAYS, &down, green);
+            interpolate_down(memory->light + 2u * TILE_RAYS, &down, blue);
+            for (uint x = 0; x < pass->size && tile->column + x < view->width; x += BLOCK_WIDTH) {
+                const uintv column = x + ray_number % BLOCK_WIDTH;
+                const Basis across = basis_at(pass, column);
+                float3v radiance = {interpolate_across(red, &across), interpolate_across(green, &across),
+                                    interpolate_across(blue, &across)};
+                if (is_open) {
+                    const Ray ray = ray_through(view, tile->column + column, tile->row + row);
+                    uint word = 0;
 #ifdef SPHERES
-                ADD_OPEN(sphere, spheres)
+                    ADD_OPEN(sphere, spheres)
 #endif
 #ifdef CYLINDERS
-                ADD_OPEN(cylinder, cylinders)
+                    ADD_OPEN(cylinder, cylinders)
 #endif
 #ifdef TORI
-                ADD_OPEN(torus, tori)
+                    ADD_OPEN(torus, tori)
 #endif
 #ifdef CURVES
-                ADD_OPEN(curve, curves)
+                    ADD_OPEN(curve, curves)
 #endif
+                }
+                const uint corner = (tile->row + y) * view->width + tile->column + x;
+                store_block(image + launch->slot + (corner - launch->first), first_ray(round), view->width,
+                            view->width - tile->column - x, end_row - tile->row - y, radiance, launch->accumulate);
             }
-            const uint pixel = (tile->row + y) * view->width + tile->column + x;
-            store_block(image + launch->slot + (pixel - launch->first), view->width, view->width - tile->column - x,
-                        end_row - tile->row - y, radiance, launch->accumulate);
         }
     }
     atomic_add(quadrature->counts + COUNT_INTEGRALS, integrals);
@@ -221,16 +297,13 @@ __kernel __attribute__((reqd_work_group_size(TILE_WORKERS, 1, 1))) void tiles(
         if (tile.column >= view.width || tile.row >= end_row)
             continue;
         meet();
-        float3v inherited = uniform3((float4)(0.0f));
-        if (parent_light) {
-            for (uint k = get_local_id(0); k < LIGHT_OF_TILE; k += TILE_WORKERS)
-                memory.light[k] = parent_light[k];
-            meet();
-            inherited = inherited_light(&pass, &tile, &parent, memory.light);
-            meet();
-        }
-        const bool is_open = settle_sources(&view, &launch, &pass, &sources, &quadrature, &tile, parent_open, inherited,
-                                            &memory);
+        for (uint k = get_local_id(0); k < LIGHT_OF_TILE; k += TILE_WORKERS)
+            memory.light[k] = parent_light ? parent_light[k] : 0.0f;
+        meet();
+        if (parent_light)
+            inherit_light(&pass, &tile, &parent, memory.light);
+        const bool is_open =
+            settle_sources(&view, &launch, &pass, &sources, &quadrature, &tile, parent_open, &memory);
         if (is_open && !pass.is_last)
             leave_open(&pass, &tile, counts, &memory, open_tiles, open_light);
         else

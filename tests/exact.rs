@@ -4,7 +4,7 @@
 mod common;
 
 use common::random::{Kind, random_scene, scene_of};
-use common::{LANE_WIDTHS, difference, renderer};
+use common::{LANE_WIDTHS, difference, meets, renderer};
 use energywave::image::Difference;
 use energywave::scene::Method;
 use energywave::verify::{Row, built_in_rays, verify};
@@ -13,15 +13,6 @@ use glam::DVec3;
 
 /// The tolerances that must be met.
 const TOLERANCES: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
-
-/// What no float32 device can undercut: for 99.9 % of the pixels, and for the worst.
-const MOST_PIXELS: f64 = 2e-5;
-const WORST_PIXEL: f64 = 2e-4;
-
-/// Whether an image meets a tolerance: 99.9 % of its pixels do, and none is off by more than ten times as much.
-fn meets(found: &Difference, tolerance: f64) -> bool {
-    found.p999 <= tolerance.max(MOST_PIXELS) && found.max <= (10.0 * tolerance).max(WORST_PIXEL)
-}
 
 /// Relative error allowed to a known ray of a kind at a tolerance of 1e-3.
 fn ray_limit(kind: &str) -> f64 {

@@ -4,13 +4,10 @@
 mod common;
 
 use common::random::{KINDS, Kind, add_source, random_view};
-use common::{LANE_WIDTHS, difference, renderer};
+use common::{LANE_WIDTHS, WORST_PIXEL, difference, renderer};
 use energywave::scene::{Camera, Curve, Decay, ImageSize, Method};
 use energywave::{Scene, reference};
 use glam::DVec3;
-
-/// What no float32 device can undercut in the worst pixel.
-const WORST_PIXEL: f64 = 2e-4;
 
 /// A view whose middle pixel looks at a point of a core, along a ray that float64 too takes for one through it.
 fn through_a_core(kind: Kind) -> Scene {

@@ -121,8 +121,22 @@ INLINE float3v offset_from_core(const curve_peaks *const peaks, const floatv s, 
 typedef struct {
     curve_path path;
     floatv core;
+    bool is_polished; // whether roots of the cubic are improved
     RootCounts counts;
 } curve_near;
+
+// Whether the roots of the cubic have too few digits for such a squared distance. They lose as many as the parabola's
+// vertex is far from the curve's middle.
+bool needs_polish(const curve_path *const path, const floatv distance2) {
+#ifdef COARSE
+    const float size = fabs(path->velocity_along) + fabs(path->velocity_across) + path->bend;
+    const float error = 3e-5f * (1.0f + fabs(path->vertex)) * size;
+    return any_lane(distance2 < error * error);
+#else
+    return true;
+#endif
+}
+
 
 INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
                                  floatv *const base) {
@@ -160,7 +174,7 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     peak->im = 0.5f * twice_sqrt(fma(lowest, per_curvature, 0.5f * path->floor2 * per_span2));
 
     const intv is_thin = (lowest < path->floor2) & (path->floor2 < 1e-6f * size2);
-    curve_near near = {*path, x, {true, true}};
+    curve_near near = {*path, x, needs_polish(path, lowest), {true, true}};
     near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2) - lowest, is_thin);
     near.path.floor2 = select(path->floor2, 0.5f * path->floor2, is_thin);
     near.path.along.at = offset.x;
@@ -202,13 +216,11 @@ INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
     curve_point point = curve_point_at(&near->path, x);
     point.core = near->core;
     floatv distance2;
-#ifdef COARSE
-    const floatv nearest = nearest_of_roots(&near->path, &point, near->counts, &distance2);
-#else
-    const floatv root = nearest_of_roots(&near->path, &point, near->counts, &distance2);
-    const floatv nearest = polished(&near->path, &point, root);
-    distance2 = min(distance2, curve_distance2(&near->path, &point, nearest));
-#endif
+    floatv nearest = nearest_of_roots(&near->path, &point, near->counts, &distance2);
+    if (near->is_polished) {
+        nearest = polished(&near->path, &point, nearest);
+        distance2 = min(distance2, curve_distance2(&near->path, &point, nearest));
+    }
     const floatv field = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
     return near->path.spline_count ? field * curve_intensity(&near->path, nearest) : field;
 }

@@ -86,7 +86,8 @@ impl Kernels {
             }
         }
         if task.rays == Rays::Tiles {
-            definitions += &tiles::definitions();
+            let device = compute.device().device_type;
+            definitions += &tiles::definitions(tiles::workers(device, options));
         }
         let options = BuildOptions {
             extra: format!("{definitions} {}", options.extra),

@@ -328,7 +328,8 @@ impl OpenClRenderer {
         };
         // On PoCL groups of 4 to 64 are equally fast, 128 leave a core idle on small images; one work-item for several
         // spans of lanes gains nothing.
-        let group = match self.device().device_type {
+        let device = self.device().device_type;
+        let group = match device {
             DeviceType::Gpu => 64,
             _ => 16,
         };
@@ -338,7 +339,7 @@ impl OpenClRenderer {
             Rays::Pixels => vec![enqueue(&[], items, group)?],
             Rays::Listed => vec![enqueue(&[&lists.rays], items, group)?],
             Rays::Tiles => {
-                let workers = tiles::workers(self.lanes);
+                let workers = tiles::workers(device, &self.options) as usize;
                 let enqueue = |pass: &layout::TilePass| {
                     let items = tiles::groups(pass) * workers;
                     enqueue(&[pass, places, light], items, workers)

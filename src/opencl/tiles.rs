@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use super::launch::{Part, word_count};
-use super::{Compute, DeviceBuffer};
+use super::{BuildOptions, Compute, DeviceBuffer};
+use crate::device::DeviceType;
 use crate::error::Result;
 use crate::pack::{Sources, layout};
 
@@ -31,9 +32,9 @@ const LIGHT: usize = 48;
 /// Column and row of an open tile, before its words of sources.
 const PLACE: usize = 2;
 
-/// For the kernels' compiler: calls instead of copies of what is needed in two places.
-pub(super) fn definitions() -> String {
-    format!(" -D PER_RAY= -D MOST_WORDS={MOST_WORDS}")
+/// For the kernels' compiler: calls instead of copies of what is needed in several places.
+pub(super) fn definitions(workers: u32) -> String {
+    format!(" -D PER_RAY= -D MOST_WORDS={MOST_WORDS} -D TILE_WORKERS={workers}")
 }
 
 /// Tiles that a pass leaves open, on the device.
@@ -67,12 +68,15 @@ fn reserve<T: bytemuck::Pod>(
     Ok(())
 }
 
-/// How smooth an interpolation must be for a tolerance: the largest odd and even highest Chebyshev coefficient, of the
+/// How much of the tolerance an interpolation may use up where it is tested.
+const MOST_ERROR: f64 = 0.5;
+
+/// How smooth an interpolation must seem for a tolerance to be tested: the largest odd and even highest Chebyshev coefficient, of the
 /// least value. Of a function that is analytic beside the tile the coefficients fall as `rho^-k`: after `rho^-2` and
 /// `rho^-3`, the highest of four nodes, `rho^-4` is missing.
 fn most_coefficients(tolerance: f64) -> (f32, f32) {
     let missing = 0.1 * tolerance;
-    (missing.powf(0.75) as f32, 0.4 * missing.sqrt() as f32)
+    (3.0 * missing.powf(0.75) as f32, 1.6 * missing.sqrt() as f32)
 }
 
 /// The passes over the tiles of a part: whole rows of an image of this width.
@@ -107,6 +111,7 @@ pub(super) fn passes(
             pixel_step: glam::Vec3::new(x, y, z).length(),
             most_odd,
             most_even,
+            most_error: (MOST_ERROR * tolerance) as f32,
         };
         level += 1;
         pass
@@ -114,8 +119,11 @@ pub(super) fn passes(
 }
 
 /// Work-items of a group, which share the 16 nodes of a tile.
-pub(super) fn workers(lanes: u32) -> usize {
-    16 / lanes as usize
+pub(super) fn workers(device: DeviceType, options: &BuildOptions) -> u32 {
+    options.tile_workers.unwrap_or(match device {
+        DeviceType::Gpu => 16,
+        _ => 1,
+    })
 }
 
 /// Groups of work-items for a pass.

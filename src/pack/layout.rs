@@ -72,7 +72,7 @@ device_structs! {
         padding_2: u32 = 60,
     }
     /// One pass over tiles of one size.
-    TilePass [52] {
+    TilePass [56] {
         size: u32 = 0,
         inner: u32 = 4,
         parent_inner: u32 = 8,
@@ -86,6 +86,7 @@ device_structs! {
         pixel_step: f32 = 40,
         most_odd: f32 = 44,
         most_even: f32 = 48,
+        most_error: f32 = 52,
     }
     /// A ray that is no pixel's.
     RayRecord [64] {

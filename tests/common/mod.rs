@@ -139,6 +139,15 @@ pub fn difference(image: &RadianceImage, reference: &RadianceImage) -> Differenc
     compare(image, reference).expect("images of one size")
 }
 
+/// What no float32 device can undercut: for 99.9 % of the pixels, and for the worst.
+const MOST_PIXELS: f64 = 2e-5;
+pub const WORST_PIXEL: f64 = 2e-4;
+
+/// Whether an image meets a tolerance: 99.9 % of its pixels do, and none is off by more than ten times as much.
+pub fn meets(found: &Difference, tolerance: f64) -> bool {
+    found.p999 <= tolerance.max(MOST_PIXELS) && found.max <= (10.0 * tolerance).max(WORST_PIXEL)
+}
+
 /// The scenes of the repository, so many pixels wide and high, by a method.
 pub fn figures(size: u32, method: Method) -> Vec<(String, Scene)> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");

@@ -1,0 +1,364 @@
+//! Tiles: the tolerance is met where interpolation is hardest, each pixel comes once, and the cost follows the wave's
+//! outline.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+
+use common::random::random_scene;
+use common::{LANE_WIDTHS, difference, meets, renderer};
+use energywave::ray::ViewPlane;
+use energywave::scene::{ImageSize, Method, Sampling};
+use energywave::{RadianceImage, Renderer, Scene, reference};
+use glam::DVec3;
+
+const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
+
+/// No multiple of any tile, more than one of the largest.
+const SIZE: ImageSize = ImageSize {
+    width: 150,
+    height: 83,
+};
+
+fn view(eye: [f64; 3], target: [f64; 3]) -> Scene {
+    let mut scene = common::empty_scene(SIZE.width, SIZE.height);
+    (scene.camera.eye, scene.camera.target) = (eye.into(), target.into());
+    scene.integration.method = Method::Exact;
+    scene
+}
+
+fn usual_view() -> Scene {
+    view([0.0, -4.0, 2.0], [0.0; 3])
+}
+
+/// The point that shows at a place of the image, in pixels, so far behind the projection plane as that is from the eye
+/// times `depth`.
+fn point_at(scene: &Scene, column: f64, row: f64, depth: f64) -> [f64; 3] {
+    let plane = ViewPlane::new(&scene.camera, scene.image);
+    let on_plane = plane.first_pixel + plane.column_step * column + plane.row_step * row;
+    (plane.eye + on_plane * (1.0 + depth)).to_array()
+}
+
+fn direction(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+    (DVec3::from(to) - DVec3::from(from)).to_array()
+}
+
+const ARCH: [[f64; 3]; 3] = [[-1.0, 0.0, 0.0], [0.0, 0.3, 1.5], [1.0, 0.0, 0.0]];
+
+/// Views and sources meant to fool a test of smoothness.
+fn hard_scenes() -> Vec<(&'static str, Scene)> {
+    let mut scenes = Vec::new();
+
+    let mut scene = usual_view();
+    for (column, row) in [(27.0, 27.5), (40.3, 70.0), (100.0, 31.0)] {
+        let center = point_at(&scene, column, row, 3.0);
+        scene
+            .tori
+            .push(common::torus(center, [0.0, 1.0, 1.0], 0.004));
+    }
+    scenes.push(("rings thinner than a pixel", scene));
+
+    let mut scene = usual_view();
+    for (column, row) in [(63.5, 63.5), (127.5, 15.5), (7.5, 71.5), (80.0, 40.0)] {
+        let center = point_at(&scene, column, row, 3.0);
+        scene.spheres.push(common::sphere(center, 1.0));
+    }
+    scenes.push(("points in the corners of tiles and on a pixel", scene));
+
+    let mut scene = usual_view();
+    let corner = point_at(&scene, 63.5, 63.5, 3.0);
+    let other = point_at(&scene, 127.5, 0.0, 3.5);
+    scene
+        .cylinders
+        .push(common::cylinder(corner, direction(corner, other)));
+    scenes.push(("a line through a corner of tiles", scene));
+
+    let mut scene = view([0.0, -3.0, 0.0], [0.0; 3]);
+    scene
+        .tori
+        .push(common::torus([0.0; 3], [0.0, 0.0, 1.0], 0.9));
+    scenes.push(("a ring seen edge-on", scene));
+
+    let mut scene = view([0.003, -3.0, 0.002], [0.0; 3]);
+    scene
+        .tori
+        .push(common::torus([0.0; 3], [0.002, 1.0, 0.0], 0.9));
+    scenes.push(("along the axis of a ring", scene));
+
+    let mut scene = view([0.01, -2.0, 1.6], [0.0, 0.0, 0.8]);
+    let series = vec![1.0, 0.9, 0.3, 0.2];
+    scene.curves.push(common::curve(ARCH, Some(series)));
+    scenes.push(("a jump of the intensity, from beside its sheet", scene));
+
+    let mut scene = usual_view();
+    let series = vec![0.1, 1.0, 0.2, 0.2, 1.0, 0.1, 0.6];
+    let folded = [[-1.0, -0.2, 0.0], [1.6, 0.3, 0.9], [-0.8, 0.2, 0.1]];
+    scene.curves.push(common::curve(folded, Some(series)));
+    scenes.push(("a jump of the intensity, from outside", scene));
+
+    let mut scene = usual_view();
+    for (column, row) in [(36.0, 36.0), (39.0, 37.0), (90.0, 50.0), (90.0, 51.0)] {
+        let center = point_at(&scene, column, row, 3.0);
+        scene.spheres.push(common::sphere(center, 1.0));
+    }
+    for row in [20.0, 23.0] {
+        let (left, right) = (
+            point_at(&scene, 0.0, row, 3.0),
+            point_at(&scene, 149.0, row + 2.0, 3.0),
+        );
+        scene
+            .cylinders
+            .push(common::cylinder(left, direction(left, right)));
+    }
+    scenes.push(("two cores in one tile", scene));
+
+    let mut scene = usual_view();
+    for (column, row) in [(-1.5, 40.0), (150.5, 3.0), (70.0, 83.7)] {
+        let center = point_at(&scene, column, row, 3.0);
+        scene.spheres.push(common::sphere(center, 1.0));
+    }
+    let (left, right) = (
+        point_at(&scene, 0.0, -2.0, 3.0),
+        point_at(&scene, 149.0, -1.0, 2.0),
+    );
+    scene
+        .cylinders
+        .push(common::cylinder(left, direction(left, right)));
+    scenes.push(("cores just outside the image", scene));
+
+    let mut scene = view([0.85, 0.1, 0.05], [-0.9, 0.0, 0.0]);
+    (scene.camera.near, scene.camera.ray_length) = (0.02, Some(4.0));
+    scene
+        .tori
+        .push(common::torus([0.0; 3], [0.0, 0.1, 1.0], 0.9));
+    scene.curves.push(common::curve(
+        [[0.9, -0.4, 0.3], [0.8, 0.0, 0.0], [0.7, 0.9, 0.4]],
+        None,
+    ));
+    scenes.push(("a camera inside the wave", scene));
+
+    let mut scene = view([-0.13, 0.05, 0.03], [-0.03, 0.23, 0.19]);
+    (scene.camera.near, scene.camera.ray_length) = (0.13, Some(10.0));
+    scene.camera.fov_y = 110.0;
+    scene.curves.push(common::curve(
+        [
+            [0.06, -0.08, 0.03],
+            [-0.09, -0.1, -0.05],
+            [-0.07, 0.06, -0.1],
+        ],
+        Some(vec![0.75, 0.27, 0.37]),
+    ));
+    scenes.push(("a wide view past a core behind it", scene));
+
+    for softening in [0.002, 0.03, 0.4] {
+        let mut scene = common::full_scene(SIZE.width, SIZE.height);
+        scene.integration.method = Method::Exact;
+        scene.integration.softening = softening;
+        scenes.push(("softened cores", scene));
+    }
+
+    let mut scene = common::full_scene(SIZE.width, SIZE.height);
+    scene.integration.method = Method::Exact;
+    // No pixel looks at the origin, where two curves end.
+    scene.camera.target = DVec3::new(0.05, 0.02, 0.03);
+    scene.decay = None;
+    scenes.push(("every kind, without decay", scene));
+    scenes
+}
+
+fn with_references(
+    scenes: Vec<(&'static str, Scene)>,
+) -> Vec<(&'static str, Scene, RadianceImage)> {
+    let with_reference = |(name, scene): (&'static str, Scene)| {
+        let image = reference::render(&scene).unwrap();
+        (name, scene, image)
+    };
+    scenes.into_iter().map(with_reference).collect()
+}
+
+fn at_tolerance(scene: &Scene, tolerance: f64) -> Scene {
+    let mut scene = scene.clone();
+    scene.integration.tolerance = tolerance;
+    scene
+}
+
+fn sampled(scene: &Scene, sampling: Sampling) -> Scene {
+    let mut scene = scene.clone();
+    scene.integration.sampling = Some(sampling);
+    scene
+}
+
+#[test]
+fn hard_scenes_meet_every_tolerance() {
+    let mut renderer = renderer(common::device().lanes, "");
+    let mut missed = Vec::new();
+    for (name, scene, expected) in with_references(hard_scenes()) {
+        for tolerance in TOLERANCES {
+            let image = renderer.render(&at_tolerance(&scene, tolerance)).unwrap();
+            let found = difference(&image, &expected);
+            if !meets(&found, tolerance) {
+                missed.push(format!("{name} at {tolerance:e}: {found:?}"));
+            }
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+#[test]
+fn interpolation_that_nothing_tests_misses_the_tolerance() {
+    let untested = "-DLEAST_CLEARANCE=0.0f -DMOST_ERROR=1e9f";
+    let mut renderer = renderer(common::device().lanes, untested);
+    let scenes = with_references(hard_scenes());
+    let missed: Vec<_> = scenes
+        .iter()
+        .filter(|(_, scene, expected)| {
+            let image = renderer.render(&at_tolerance(scene, 1e-2)).unwrap();
+            !meets(&difference(&image, expected), 1e-2)
+        })
+        .map(|(name, ..)| *name)
+        .collect();
+    println!("missed: {missed:?}");
+    assert!(missed.len() > 4, "only {missed:?}");
+}
+
+#[test]
+fn random_scenes_by_tiles_meet_the_tolerance_as_they_do_by_pixels() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for seed in 100..130 {
+        let scene = random_scene(seed, 160);
+        let strict = at_tolerance(&sampled(&scene, Sampling::Pixels), 1e-5);
+        let expected = renderer.render(&strict).unwrap();
+        for tolerance in [1e-2, 1e-3] {
+            let scene = at_tolerance(&scene, tolerance);
+            let by_pixels = renderer.render(&sampled(&scene, Sampling::Pixels)).unwrap();
+            let by_tiles = renderer.render(&sampled(&scene, Sampling::Tiles)).unwrap();
+            let (pixels, tiles) = (
+                difference(&by_pixels, &expected),
+                difference(&by_tiles, &expected),
+            );
+            assert!(meets(&pixels, tolerance), "seed {seed}: {pixels:?}");
+            assert!(meets(&tiles, tolerance), "seed {seed}: {tiles:?}");
+        }
+    }
+}
+
+#[test]
+fn every_lane_width_paints_the_same_image() {
+    let mut scene = common::full_scene(75, 37);
+    scene.integration.method = Method::Exact;
+    scene.integration.tolerance = 1e-4;
+    scene.camera.target = DVec3::new(0.05, 0.02, 0.03);
+    let expected = reference::render(&scene).unwrap();
+    for lanes in LANE_WIDTHS {
+        let found = difference(&renderer(lanes, "").render(&scene).unwrap(), &expected);
+        assert!(meets(&found, 1e-4), "{lanes} lanes: {found:?}");
+    }
+}
+
+#[test]
+fn images_of_every_shape_are_painted_once_and_in_full() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for (width, height) in [(1, 1), (7, 2), (8, 8), (65, 1), (1, 130), (63, 64), (200, 3)] {
+        let mut scene = usual_view();
+        scene.image = ImageSize { width, height };
+        scene.spheres.push(common::sphere([0.1, 0.2, 0.3], 1.0));
+        scene
+            .tori
+            .push(common::torus([0.0; 3], [0.0, 0.1, 1.0], 0.9));
+        let by_tiles = renderer.render(&scene).unwrap();
+        let by_pixels = renderer.render(&sampled(&scene, Sampling::Pixels)).unwrap();
+        let found = difference(&by_tiles, &by_pixels);
+        assert!(found.max < 2e-3, "{width}x{height}: {found:?}");
+        assert!(by_tiles.as_slice().chunks(4).all(|pixel| pixel[3] == 1.0));
+    }
+}
+
+#[test]
+fn frames_are_equal_to_the_bit_in_many_launches_and_in_few() {
+    let mut scene = random_scene(7, 500);
+    scene.image.height = 700;
+    let mut renderer = renderer(common::device().lanes, "");
+    let first = renderer.render(&scene).unwrap();
+    let launches = renderer.last_cost().launches;
+    let mut again = renderer.render(&scene).unwrap();
+    for _ in 0..3 {
+        again = renderer.render(&scene).unwrap();
+    }
+    assert!(renderer.last_cost().launches < launches);
+    assert_eq!(first, again);
+}
+
+/// Spheres in a cube.
+fn many_spheres(count: u32, image: ImageSize) -> Scene {
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut scene = usual_view();
+    scene.image = image;
+    let mut coordinate = || 2.0 * random.f64() - 1.0;
+    for _ in 0..count {
+        let center = [coordinate(), coordinate(), coordinate()];
+        scene.spheres.push(common::sphere(center, 1.0));
+    }
+    scene
+}
+
+#[test]
+fn more_sources_than_a_launch_takes_are_all_in_the_image() {
+    let mut renderer = renderer(common::device().lanes, "");
+    let image = ImageSize {
+        width: 70,
+        height: 40,
+    };
+    let scene = many_spheres(5000, image);
+    let by_pixels = sampled(&scene, Sampling::Pixels);
+    let expected = renderer.render(&by_pixels).unwrap();
+    let found = difference(&renderer.render(&scene).unwrap(), &expected);
+    assert!(found.max < 1e-3, "{found:?}");
+    let mut less = scene;
+    less.spheres.pop();
+    let found = difference(&renderer.render(&less).unwrap(), &expected);
+    assert!(found.max > 1e-4, "one sphere less is not seen: {found:?}");
+}
+
+/// Integrals of a frame.
+fn evaluations(renderer: &mut Renderer, scene: &Scene, width: u32, height: u32) -> u64 {
+    let mut scene = scene.clone();
+    scene.image = ImageSize { width, height };
+    renderer.render(&scene).unwrap();
+    renderer.last_cost().evaluations
+}
+
+#[test]
+fn integrals_grow_with_the_outline_and_not_with_the_pixels() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for (name, scene) in common::figures(48, Method::Exact) {
+        let small = evaluations(&mut renderer, &scene, 960, 540);
+        let large = evaluations(&mut renderer, &scene, 1920, 1080);
+        let growth = large as f64 / small as f64;
+        assert!(growth < 2.6, "{name}: {small} to {large}");
+        let all = 1920 * 1080 * scene.source_count() as u64;
+        assert!(10 * large < all, "{name}: {large} of {all}");
+        let pixels = sampled(&scene, Sampling::Pixels);
+        assert_eq!(
+            evaluations(&mut renderer, &pixels, 96, 54),
+            96 * 54 * scene.source_count() as u64
+        );
+    }
+}
+
+#[test]
+fn a_source_costs_as_much_among_many_as_alone() {
+    let mut renderer = renderer(common::device().lanes, "");
+    let image = ImageSize {
+        width: 256,
+        height: 256,
+    };
+    let per_source = |renderer: &mut Renderer, count| {
+        let scene = many_spheres(count, image);
+        evaluations(renderer, &scene, 256, 256) as f64 / f64::from(count)
+    };
+    let (few, many) = (
+        per_source(&mut renderer, 16),
+        per_source(&mut renderer, 512),
+    );
+    assert!(many < 1.2 * few, "{few} and {many}");
+    assert!(many < 0.1 * 65536.0, "{many} of 65536");
+}
