@@ -12,8 +12,8 @@ __kernel void render(const View view, const Launch launch, __global const Node *
     if (begin >= launch.count)
         return;
     const Sources sources = {spheres, cylinders, tori, curves, spline_pieces};
-    const Quadrature quadrature = {nodes, launch.node_count, decay_of(&view), view.torus_threshold,
-                                   view.curve_threshold, counts};
+    const Quadrature quadrature = {
+        nodes, launch.node_count, decay_of(&view), view.torus_threshold, view.curve_threshold, counts};
     const Ray ray = pixel_ray(&view, launch.first + begin);
     const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch);
     store_pixels(image + launch.slot + begin, LAST_LANES(launch.count - begin), radiance, launch.accumulate);

@@ -1,6 +1,6 @@
 // Square tiles of pixels whose light is interpolated from 16 of their pixels, the nodes: four in a row and four rows of
-// them, near the zeros of the Chebyshev polynomial. A group of work-items works on a tile, 16 rays at a time in rounds of
-// all their lanes: on a GPU 16 of one lane each, elsewhere a single one (PoCL 3.1 compiles barriers for hours).
+// them, near the zeros of the Chebyshev polynomial. A group of work-items works on a tile, 16 rays at a time in rounds
+// of all their lanes: on a GPU 16 of one lane each, elsewhere a single one (PoCL 3.1 compiles barriers for hours).
 #pragma once
 #include "ray.h"
 #include "store.h"
@@ -129,8 +129,8 @@ bool none_is_positive(__local const float *const values) {
     return none_is;
 }
 
-// Whether values at the nodes look like those of a function that can be interpolated: the highest coefficients are small
-// beside the least value. Never where a value is not a number.
+// Whether values at the nodes look like those of a function that can be interpolated: the highest coefficients are
+// small beside the least value. Never where a value is not a number.
 bool seems_smooth(const TilePass *const pass, __local const float *const values) {
     const float4 v0 = vload4(0, values), v1 = vload4(1, values), v2 = vload4(2, values), v3 = vload4(3, values);
     const float4 sizes = fmin(fmin(fabs(v0), fabs(v1)), fmin(fabs(v2), fabs(v3)));

@@ -270,13 +270,13 @@ INLINE void leave_open(const TilePass *const pass, const Tile *const tile, __glo
         open_light[memory->slot * LIGHT_OF_TILE + k] = memory->light[k];
 }
 
-__kernel __attribute__((reqd_work_group_size(TILE_WORKERS, 1, 1))) void tiles(
-    const View view, const Launch launch, __global const Node *const restrict nodes,
-    __global const Sphere *const restrict spheres, __global const Cylinder *const restrict cylinders,
-    __global const Torus *const restrict tori, __global const Curve *const restrict curves,
-    __global const SplinePiece *const restrict spline_pieces, __global uint *const restrict counts,
-    __global float4 *const restrict image, const TilePass pass, __global uint *const restrict open_tiles,
-    __global float *const restrict open_light) {
+__kernel __attribute__((reqd_work_group_size(TILE_WORKERS, 1, 1))) void
+tiles(const View view, const Launch launch, __global const Node *const restrict nodes,
+      __global const Sphere *const restrict spheres, __global const Cylinder *const restrict cylinders,
+      __global const Torus *const restrict tori, __global const Curve *const restrict curves,
+      __global const SplinePiece *const restrict spline_pieces, __global uint *const restrict counts,
+      __global float4 *const restrict image, const TilePass pass, __global uint *const restrict open_tiles,
+      __global float *const restrict open_light) {
     __local TileMemory memory;
     const Sources sources = {spheres, cylinders, tori, curves, spline_pieces};
     const Quadrature quadrature = {nodes, 0, decay_of(&view), view.torus_threshold, view.curve_threshold, counts};
@@ -302,8 +302,7 @@ __kernel __attribute__((reqd_work_group_size(TILE_WORKERS, 1, 1))) void tiles(
         meet();
         if (parent_light)
             inherit_light(&pass, &tile, &parent, memory.light);
-        const bool is_open =
-            settle_sources(&view, &launch, &pass, &sources, &quadrature, &tile, parent_open, &memory);
+        const bool is_open = settle_sources(&view, &launch, &pass, &sources, &quadrature, &tile, parent_open, &memory);
         if (is_open && !pass.is_last)
             leave_open(&pass, &tile, counts, &memory, open_tiles, open_light);
         else

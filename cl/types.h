@@ -46,9 +46,9 @@ typedef struct {
     uint write_to;            // where it gets this one's
     uint word_count;          // words of 32 sources
     float pixel_step;         // from a pixel to its neighbour, world units on the projection plane
-    float most_odd;           // how large an odd and an even highest coefficient of an interpolation may be, of the least
-    float most_even;          // value; else it is not put to the test
-    float most_error;         // and how large its relative error in the test
+    float most_odd;   // how large an odd and an even highest coefficient of an interpolation may be, of the least
+    float most_even;  // value; else it is not put to the test
+    float most_error; // and how large its relative error in the test
 } TilePass;
 
 // A ray that is no pixel's: origin S, span E - S.

@@ -88,7 +88,7 @@ INLINE bool JOIN(first_two_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, cons
 #endif
 
 PER_RAY floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
-                                  const Quadrature *const quadrature) {
+                                   const Quadrature *const quadrature) {
     const Decay decay = quadrature->decay;
     const float threshold = quadrature->JOIN(FIELD, _threshold);
     const JOIN(FIELD, _peaks) peaks = JOIN(FIELD, _peaks_along)(ray, sources, index);

@@ -137,7 +137,6 @@ bool needs_polish(const curve_path *const path, const floatv distance2) {
 #endif
 }
 
-
 INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
                                  floatv *const base) {
     const curve_path *const path = &peaks->path;

@@ -210,8 +210,7 @@ INLINE uint curve_more_cuts(const curve_peaks *const peaks) {
 }
 
 curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is_b) {
-    const curve_sight sight = {select(a.s, b.s, is_b), select(a.x, b.x, is_b),
-                               select(a.distance2, b.distance2, is_b)};
+    const curve_sight sight = {select(a.s, b.s, is_b), select(a.x, b.x, is_b), select(a.distance2, b.distance2, is_b)};
     return sight;
 }
 

@@ -198,7 +198,8 @@ impl Overrides {
         };
         if integration.method == Method::Simpson {
             if self.sampling == Some(SamplingName::Tiles) {
-                let message = "--sampling tiles is for --method exact; Simpson's rule takes every pixel";
+                let message =
+                    "--sampling tiles is for --method exact; Simpson's rule takes every pixel";
                 return Err(Error::Unsupported(message.to_owned()));
             }
             // What the file says of the method that it names.

@@ -6,7 +6,7 @@ use opencl3::event::Event;
 use opencl3::types::cl_mem;
 
 use super::failure::failed;
-use super::{Compute, DeviceBuffer};
+use super::{Compute, DeviceBuffer, tiles};
 use crate::error::Result;
 
 /// Tiles: integrals, pairs of a ray and a source.
@@ -14,8 +14,8 @@ pub(super) const INTEGRALS: usize = 0;
 /// Method exact, if the kernels are built to count them: nodes of quadratures.
 pub(super) const NODES: usize = 1;
 /// Tiles that a pass left open; a number for each pass.
-const OPEN_TILES: usize = 2;
-const LEN: usize = 8;
+const OPEN_TILES: usize = NODES + 1;
+const LEN: usize = OPEN_TILES + tiles::PASSES;
 
 /// The numbers' places, for the kernels' compiler.
 pub(super) fn definitions() -> String {

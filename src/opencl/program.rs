@@ -10,8 +10,8 @@ use opencl3::event::Event;
 use opencl3::kernel::Kernel;
 use opencl3::program::Program as ClProgram;
 
-use super::failure::{code_name, failed};
 use super::counts::{self, Counts};
+use super::failure::{code_name, failed};
 use super::{Compute, DeviceBuffer, Uploaded, source};
 use crate::error::{Error, Result};
 use crate::pack::{Rule, layout};

@@ -186,9 +186,21 @@ impl OpenClRenderer {
                 },
                 source_count: source_count(&sources),
                 fewest_pixels: (256 * units).max(1024),
-                grain: if is_tiled { tiles::LARGEST * view.width } else { 1 },
-                most_pixels: if is_tiled { tiles::MOST_PIXELS } else { u32::MAX },
-                most_sources: if is_tiled { tiles::MOST_SOURCES } else { u64::MAX },
+                grain: if is_tiled {
+                    tiles::LARGEST * view.width
+                } else {
+                    1
+                },
+                most_pixels: if is_tiled {
+                    tiles::MOST_PIXELS
+                } else {
+                    u32::MAX
+                },
+                most_sources: if is_tiled {
+                    tiles::MOST_SOURCES
+                } else {
+                    u64::MAX
+                },
             },
             sources,
             task,
@@ -339,9 +351,10 @@ impl OpenClRenderer {
             Rays::Pixels => vec![enqueue(&[], items, group)?],
             Rays::Listed => vec![enqueue(&[&lists.rays], items, group)?],
             Rays::Tiles => {
+                let units = self.device().compute_units;
                 let workers = tiles::workers(device, &self.options) as usize;
                 let enqueue = |pass: &layout::TilePass| {
-                    let items = tiles::groups(pass) * workers;
+                    let items = tiles::groups(pass, units) * workers;
                     enqueue(&[pass, places, light], items, workers)
                 };
                 passes.iter().map(enqueue).collect::<Result<_>>()?

@@ -19,7 +19,7 @@ pub struct Rule {
 /// The least tolerance for which a rule serves, and the rule: `cargo bench --bench rules` shows what each is good for.
 const RULES: [(f64, Rule); 5] = [
     (1e-1, rule(4, 1.0, 1e-1)),
-    (1e-2, rule(6, 1e-1, 1e-3)),
+    (1e-2, rule(8, 1e-1, 1e-3)),
     (1e-3, rule(8, 2e-3, 2e-4)),
     (1e-4, rule(10, 5e-5, 2e-5)),
     (0.0, rule(10, 3e-5, 5e-6)),
