@@ -8,6 +8,7 @@ mod random;
 
 use energywave::image::compare;
 use energywave::pack::Rule;
+use energywave::scene::Sampling;
 use energywave::{BuildOptions, Device, RadianceImage, Renderer, Scene, reference};
 use random::{Kind, scene_of};
 
@@ -16,11 +17,11 @@ const SIZE: u32 = 48;
 const NODES: [u32; 4] = [4, 6, 8, 10];
 const THRESHOLDS: [f32; 10] = [1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6];
 
-fn renderer(rule: Rule, extra: &str) -> Renderer {
+fn renderer(rule: Rule, counts_nodes: bool) -> Renderer {
     let choice = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned());
     let options = BuildOptions {
         rule: Some(rule),
-        extra: extra.to_owned(),
+        counts_nodes,
         ..BuildOptions::default()
     };
     Renderer::with_options(&Device::select(&choice).unwrap(), &options).unwrap()
@@ -28,7 +29,7 @@ fn renderer(rule: Rule, extra: &str) -> Renderer {
 
 /// Relative errors of all pixels of all scenes, in rising order.
 fn errors(rule: Rule, scenes: &[(Scene, RadianceImage)]) -> Vec<f64> {
-    let mut renderer = renderer(rule, "");
+    let mut renderer = renderer(rule, false);
     let mut errors = Vec::new();
     for (scene, expected) in scenes {
         let image = renderer.render(scene).unwrap();
@@ -43,18 +44,10 @@ fn errors(rule: Rule, scenes: &[(Scene, RadianceImage)]) -> Vec<f64> {
 
 /// Nodes that an average pixel takes.
 fn nodes(rule: Rule, scenes: &[(Scene, RadianceImage)]) -> f64 {
-    let mut renderer = renderer(rule, "-D COUNT_NODES");
+    let mut renderer = renderer(rule, true);
     let counts = scenes.iter().map(|(scene, _)| {
-        let mut scene = scene.clone();
-        energywave::bench::count_instead_of_light(&mut scene);
-        let image = renderer.render(&scene).unwrap();
-        let sum: f64 = image
-            .as_slice()
-            .iter()
-            .step_by(4)
-            .map(|n| f64::from(*n))
-            .sum();
-        sum / scene.image.pixels() as f64
+        renderer.render(scene).unwrap();
+        renderer.last_cost().field_evaluations as f64 / scene.image.pixels() as f64
     });
     counts.sum::<f64>() / scenes.len() as f64
 }
@@ -63,7 +56,8 @@ fn main() {
     for kind in [Kind::Torus, Kind::Curve] {
         let scenes: Vec<_> = (0..SCENES)
             .map(|seed| {
-                let scene = scene_of(kind, seed, SIZE);
+                let mut scene = scene_of(kind, seed, SIZE);
+                scene.integration.sampling = Some(Sampling::Pixels);
                 let expected = reference::render(&scene).unwrap();
                 (scene, expected)
             })

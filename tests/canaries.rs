@@ -4,19 +4,27 @@
 mod common;
 
 use common::{ALL_KINDS, LANE_WIDTHS, full_scene};
-use energywave::opencl::{DeviceBuffer, Program};
+use energywave::opencl::{Argument, DeviceBuffer, Program};
 use energywave::pack::{self, Rule, Sources, layout};
 use energywave::ray::ViewPlane;
 use energywave::scene::Integration;
 
-/// Renders straight into a buffer with 64 marked pixels behind the image; how many marks are left.
-fn marks_left(lanes: u32, method: &str, extra: &str, width: u32, height: u32) -> usize {
+/// Renders straight into a buffer with 64 marked pixels behind the image, all sources pixel by pixel; how many marks are
+/// left. `kernel` is `render` or `tiles`.
+fn marks_left(
+    kernel: &str,
+    lanes: u32,
+    method: &str,
+    extra: &str,
+    (width, height): (u32, u32),
+) -> usize {
     const MARKS: usize = 64;
     const MARK: [f32; 4] = [-1.0, -2.0, -3.0, -4.0];
     let scene = full_scene(width, height);
     let compute = common::compute();
     let options = common::options(lanes, &format!("{ALL_KINDS} {method} {extra}"));
-    let program = Program::build(&compute, &["render.cl"], &options).unwrap();
+    let file = format!("{kernel}.cl");
+    let program = Program::build(&compute, &[file.as_str()], &options).unwrap();
     let plane = ViewPlane::new(&scene.camera, scene.image);
     let packed = Sources::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
     let nodes = pack::nodes(20, scene.decay);
@@ -39,26 +47,42 @@ fn marks_left(lanes: u32, method: &str, extra: &str, width: u32, height: u32) ->
     let pixels = scene.image.pixels();
     let output = upload(&compute, &vec![MARK; pixels + MARKS]);
     let view = pack::view(&plane, &scene);
-    program
-        .run(
-            &compute,
-            "render",
-            &[
-                &view,
-                &launch,
-                &upload(&compute, &nodes),
-                &upload(&compute, &packed.spheres),
-                &upload(&compute, &packed.cylinders),
-                &upload(&compute, &packed.tori),
-                &upload(&compute, &packed.curves),
-                &upload(&compute, &packed.spline_pieces),
-                &output,
-            ],
-            // More work-items than pixels, as padded work-groups have.
-            pixels.div_ceil(lanes as usize) + 3,
-            1,
-        )
-        .unwrap();
+    // A single pass that lets nothing be interpolated.
+    let pass = layout::TilePass {
+        size: 8,
+        inner: 2,
+        is_last: 1,
+        columns: width.div_ceil(8),
+        tile_count: width.div_ceil(8) * height.div_ceil(8),
+        word_count: 4,
+        pixel_step: 1e-3,
+        ..bytemuck::Zeroable::zeroed()
+    };
+    let lists: [&dyn Argument; 7] = [
+        &upload(&compute, &nodes),
+        &upload(&compute, &packed.spheres),
+        &upload(&compute, &packed.cylinders),
+        &upload(&compute, &packed.tori),
+        &upload(&compute, &packed.curves),
+        &upload(&compute, &packed.spline_pieces),
+        &upload(&compute, &[0_u32; 16]),
+    ];
+    let (places, light) = (
+        upload(&compute, &[0_u32; 6]),
+        upload(&compute, &[0.0_f32; 48]),
+    );
+    let mut arguments: Vec<&dyn Argument> = vec![&view, &launch];
+    arguments.extend(lists);
+    arguments.push(&output);
+    // More work-items than there is work, as padded work-groups have.
+    let items = match kernel {
+        "tiles" => {
+            arguments.extend([&pass as &dyn Argument, &places, &light]);
+            pass.tile_count as usize + 3
+        }
+        _ => pixels.div_ceil(lanes as usize) + 3,
+    };
+    program.run(&compute, kernel, &arguments, items, 1).unwrap();
     let mut read = vec![[0.0_f32; 4]; pixels + MARKS];
     output.read(&compute, &mut read).unwrap();
     assert!(
@@ -74,14 +98,12 @@ fn marks_left(lanes: u32, method: &str, extra: &str, width: u32, height: u32) ->
 #[test]
 fn nothing_is_written_behind_the_image() {
     let exact = Rule::of(&Integration::default()).definitions();
+    let tiles = format!("{exact} -D PER_RAY= -D MOST_WORDS=4 -D TILE_WORKERS=1");
     for lanes in LANE_WIDTHS {
-        for method in ["", &exact] {
-            for (width, height) in [(1, 1), (13, 7), (16, 4), (31, 1)] {
-                assert_eq!(
-                    marks_left(lanes, method, "", width, height),
-                    64,
-                    "{lanes} lanes, {width}x{height}"
-                );
+        for (kernel, method) in [("render", ""), ("render", &exact), ("tiles", &tiles)] {
+            for size in [(1, 1), (13, 7), (16, 4), (31, 1)] {
+                let left = marks_left(kernel, lanes, method, "", size);
+                assert_eq!(left, 64, "{kernel}, {lanes} lanes, {size:?}");
             }
         }
     }
@@ -89,5 +111,6 @@ fn nothing_is_written_behind_the_image() {
 
 #[test]
 fn a_store_of_all_lanes_is_noticed_behind_the_image() {
-    assert_eq!(marks_left(8, "", "-DLAST_LANES(left)=8u", 13, 7), 64 - 5);
+    let all_lanes = "-DLAST_LANES(left)=8u";
+    assert_eq!(marks_left("render", 8, "", all_lanes, (13, 7)), 64 - 5);
 }

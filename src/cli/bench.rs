@@ -3,12 +3,10 @@
 use std::path::Path;
 use std::time::Duration;
 
-use energywave::bench::{
-    DIVISIONS, RESOLUTIONS, Speed, Table, count_field_evaluations, measure, turned,
-};
+use energywave::bench::{DIVISIONS, RESOLUTIONS, Speed, Table, exact_cost, measure};
 use energywave::image::Output;
 use energywave::scene::{Method, Sampling};
-use energywave::{Device, Error, Renderer, Scene};
+use energywave::{Device, DeviceType, Error, Renderer, Scene};
 use serde::Serialize;
 
 use super::args::BenchArguments;
@@ -126,6 +124,10 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     let speed = measure(&mut renderer, &scene, time(arguments))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     save(arguments, &format!("{stem}.exr"), &speed, &scene)?;
+    let cost = match (scene.integration.method, device.device_type) {
+        (Method::Simpson, _) | (_, DeviceType::Reference) => speed.cost,
+        (Method::Exact, _) => exact_cost(&device, &scene)?,
+    };
     let record = SceneSpeed {
         scene: path.display().to_string(),
         width: scene.image.width,
@@ -134,11 +136,8 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
         sampling: scene.integration.sampling(),
         fps: speed.fps,
         kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
-        evaluations: speed.cost.evaluations,
-        field_evaluations: match scene.integration.method {
-            Method::Simpson => speed.cost.field_evaluations,
-            Method::Exact => count_field_evaluations(&device, &turned(&scene, speed.frame))?,
-        },
+        evaluations: cost.evaluations,
+        field_evaluations: cost.field_evaluations,
         frame: speed.frame,
         device: device.name,
     };

@@ -15,7 +15,7 @@ pub(super) const INTEGRALS: usize = 0;
 pub(super) const NODES: usize = 1;
 /// Tiles that a pass left open; a number for each pass.
 const OPEN_TILES: usize = NODES + 1;
-const LEN: usize = OPEN_TILES + tiles::PASSES;
+const LEN: usize = OPEN_TILES + tiles::MOST_PASSES;
 
 /// The numbers' places, for the kernels' compiler.
 pub(super) fn definitions() -> String {

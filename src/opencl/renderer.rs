@@ -70,6 +70,8 @@ struct Job {
     work: Work,
     task: Task,
     tolerance: f64,
+    /// Side of the largest tiles, pixels.
+    first_tile_size: u32,
 }
 
 impl OpenClRenderer {
@@ -158,6 +160,7 @@ impl OpenClRenderer {
                 (None, Sampling::Pixels | Sampling::Tiles) => Rays::Pixels,
             },
         };
+        let first_tile_size = tiles::first_size(scene.image);
         let is_tiled = task.rays == Rays::Tiles;
         self.kernels
             .prepare(&self.compute, &self.options, task, &rule)?;
@@ -187,7 +190,7 @@ impl OpenClRenderer {
                 source_count: source_count(&sources),
                 fewest_pixels: (256 * units).max(1024),
                 grain: if is_tiled {
-                    tiles::LARGEST * view.width
+                    first_tile_size * view.width
                 } else {
                     1
                 },
@@ -205,6 +208,7 @@ impl OpenClRenderer {
             sources,
             task,
             tolerance: scene.integration.tolerance,
+            first_tile_size,
         })
     }
 
@@ -312,7 +316,10 @@ impl OpenClRenderer {
 
     fn launch(&mut self, job: &Job, part: &Part, slot: u32) -> Result<Launched> {
         let passes = match job.task.rays {
-            Rays::Tiles => tiles::passes(part, &job.sources, &job.view, job.tolerance).to_vec(),
+            Rays::Tiles => {
+                let size = job.first_tile_size;
+                tiles::passes(part, &job.sources, &job.view, size, job.tolerance)
+            }
             Rays::Pixels | Rays::Listed => Vec::new(),
         };
         self.open_tiles.reserve(&self.compute, &passes)?;

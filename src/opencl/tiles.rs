@@ -7,15 +7,21 @@ use super::{BuildOptions, Compute, DeviceBuffer};
 use crate::device::DeviceType;
 use crate::error::Result;
 use crate::pack::{Sources, layout};
+use crate::scene::ImageSize;
 
-/// Number of passes.
-pub(super) const PASSES: usize = 4;
+/// Sides of the smallest and of the largest tile, pixels; each pass halves them.
+const SMALLEST: u32 = 8;
+const LARGEST: u32 = 256;
 
-/// Sides of the tiles of each pass, pixels.
-const SIZES: [u32; PASSES] = [64, 32, 16, 8];
+/// Passes at most.
+pub(super) const MOST_PASSES: usize = (LARGEST / SMALLEST).ilog2() as usize + 1;
 
-/// The largest tile's side, pixels.
-pub(super) const LARGEST: u32 = SIZES[0];
+/// The side of the first pass' tiles: about a sixteenth of an image, so that many tiles see a wave whole and the first
+/// pass costs the same at every size.
+pub(super) fn first_size(image: ImageSize) -> u32 {
+    let side = image.width.max(image.height);
+    (side / 16).next_power_of_two().clamp(64, LARGEST)
+}
 
 /// Pixels of one launch, so that the list of open tiles stays small; a frame of 3840x2160 fits.
 pub(super) const MOST_PIXELS: u32 = 1 << 23;
@@ -73,7 +79,7 @@ fn reserve<T: bytemuck::Pod>(
 }
 
 /// How much of the tolerance an interpolation may use up where it is tested.
-const MOST_ERROR: f64 = 0.5;
+const MOST_ERROR: f64 = 0.25;
 
 /// How smooth an interpolation must seem for a tolerance to be tested: the largest odd and even highest Chebyshev coefficient, of the
 /// least value. Of a function that is analytic beside the tile the coefficients fall as `rho^-k`: after `rho^-2` and
@@ -83,30 +89,31 @@ fn most_coefficients(tolerance: f64) -> (f32, f32) {
     (3.0 * missing.powf(0.75) as f32, 1.6 * missing.sqrt() as f32)
 }
 
-/// The passes over the tiles of a part: whole rows of an image of this width.
+/// The passes over the tiles of a part, whole rows of tiles of an image.
 pub(super) fn passes(
     part: &Part,
     sources: &Sources,
     view: &layout::View,
+    first_size: u32,
     tolerance: f64,
-) -> [layout::TilePass; PASSES] {
+) -> Vec<layout::TilePass> {
     let rows = part.pixels.len() as u32 / view.width;
-    let columns = view.width.div_ceil(LARGEST);
-    let tile_count = columns * rows.div_ceil(LARGEST);
+    let columns = view.width.div_ceil(first_size);
+    let tile_count = columns * rows.div_ceil(first_size);
     let (most_odd, most_even) = most_coefficients(tolerance);
     let [x, y, z, _] = view.row_step;
+    let last = (first_size / SMALLEST).ilog2();
     let mut written: Range<u32> = 0..0;
-    let mut level = 0;
-    SIZES.map(|size| {
-        let is_last = level + 1 == PASSES as u32;
+    let mut pass = |level: u32| {
+        let size = first_size >> level;
         let read_from = written.start;
         written = written.end..written.end + (tile_count << (2 * level));
-        let pass = layout::TilePass {
+        layout::TilePass {
             size,
             inner: inner(size),
             parent_inner: inner(2 * size),
             level,
-            is_last: u32::from(is_last),
+            is_last: u32::from(level == last),
             columns,
             tile_count,
             read_from,
@@ -116,10 +123,9 @@ pub(super) fn passes(
             most_odd,
             most_even,
             most_error: (MOST_ERROR * tolerance) as f32,
-        };
-        level += 1;
-        pass
-    })
+        }
+    };
+    (0..=last).map(&mut pass).collect()
 }
 
 /// Work-items of a group, which share the 16 nodes of a tile.
