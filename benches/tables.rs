@@ -4,6 +4,8 @@
 //! record with machine, device, driver and command, and NAME.svg, frames a second against evaluations a frame.
 #![allow(clippy::unwrap_used)] // a bench that fails stops
 
+mod common;
+
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
@@ -12,7 +14,7 @@ use energywave::image::compare;
 use energywave::opencl::{BuildOptions, Compute, DeviceBuffer, OpenClDevice, Program, discover};
 use energywave::pack::{self, layout};
 use energywave::ray::ViewPlane;
-use energywave::{Device, RadianceImage, Renderer, Scene};
+use energywave::{Device, RadianceImage, Scene};
 use glam::DVec3;
 use plotters::prelude::*;
 
@@ -37,14 +39,12 @@ impl Cell {
 fn main() {
     // SAFETY: nothing has started a thread yet.
     unsafe { energywave::opencl::keep_pocl_threads_apart() };
-    let choice = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned());
-    let device = Device::select(&choice).unwrap();
+    let (device, mut renderer) = common::device();
     let opencl: OpenClDevice = discover()
         .devices
         .into_iter()
         .find(|d| d.name == device.name)
         .unwrap();
-    let mut renderer = Renderer::new(&device).unwrap();
     let mut cells = Vec::new();
     for table in [Table::Torus, Table::Bezier] {
         let plain = Plain::new(&opencl, table);
@@ -160,26 +160,8 @@ fn parameters(scene: &Scene, eye: DVec3) -> Vec<f32> {
 }
 
 fn record(device: &Device, cells: &[Cell]) -> String {
-    let mut text = String::new();
-    let cpu = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = cpu.lines().find(|line| line.starts_with("model name"));
-    let _ = writeln!(
-        text,
-        "Frames a second, whole frames with the image in host memory, a new camera for every frame.\n\n\
-         * device: {}, {} compute units, {} lanes\n* platform: {}, {}, driver {}\n* processor: {}\n\
-         * command: `cargo bench --bench tables`\n* the paper's device: AMD FirePro D500\n",
-        device.name,
-        device.compute_units,
-        device.lanes,
-        device.platform,
-        device.version,
-        device.driver,
-        model.map_or("unknown", |line| line
-            .split(':')
-            .nth(1)
-            .unwrap_or("")
-            .trim())
-    );
+    let mut text = common::header(device, "cargo bench --bench tables");
+    text.push_str("* the paper's device: AMD FirePro D500\n\n");
     for table in [Table::Torus, Table::Bezier] {
         let _ = writeln!(
             text,

@@ -128,6 +128,16 @@ const BAD: &[(&str, &str, &str)] = &[
         "expected `simpson` or `exact`",
     ),
     (
+        "[integration]\nsampling = \"rows\"\n",
+        "5:12: integration.sampling",
+        "expected `pixels` or `tiles`",
+    ),
+    (
+        "[integration]\nmethod = \"simpson\"\nsampling = \"tiles\"\n",
+        "6:12: integration.sampling",
+        "Simpson's rule takes every pixel",
+    ),
+    (
         "[integration]\nsoftening = -0.1\n",
         "5:13: integration.softening",
         "negative",

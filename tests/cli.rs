@@ -66,6 +66,13 @@ fn overrides_replace_the_scenes_values() {
             "",
         );
     }
+    let conflict = ["--method", "simpson", "--sampling", "tiles"];
+    expect(&folder.render("e.exr", &conflict), 2, "every pixel");
+    expect(
+        &folder.render("e.exr", &["--sampling", "rows"]),
+        2,
+        "pixels, tiles",
+    );
     let open = |name: &str| RadianceImage::open(folder.path().join(name)).unwrap();
     let exact = open("c.exr");
     let off = |name: &str| energywave::image::compare(&open(name), &exact).unwrap().max;

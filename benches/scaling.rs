@@ -1,0 +1,275 @@
+//! How a frame's time and integrals grow with the image and with the number of sources, by tiles and by pixels, method
+//! exact at a tolerance of 1e-3.
+//!
+//! `cargo bench --bench scaling` prints tables and fitted exponents; `cargo bench --bench scaling -- benches/results/NAME`
+//! also writes NAME.md and the plots NAME-width.svg and NAME-sources.svg.
+#![allow(clippy::unwrap_used)] // a bench that fails stops
+
+mod common;
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use energywave::bench::{Table, exact_cost, measure};
+use energywave::scene::{Curve, ImageSize, Method, Sampling, Sphere};
+use energywave::{Device, Renderer, Scene};
+use glam::DVec3;
+use plotters::prelude::*;
+
+const TIME: Duration = Duration::from_secs(1);
+const WIDTHS: [u32; 6] = [256, 512, 1024, 2048, 4096, 8192];
+const SPHERES: [u32; 7] = [1, 4, 16, 64, 256, 1024, 4096];
+const CURVES: [u32; 5] = [1, 4, 16, 64, 256];
+
+/// One scene at growing sizes, by one sampling.
+struct Series {
+    name: &'static str,
+    sampling: Sampling,
+    points: Vec<Point>,
+}
+
+struct Point {
+    /// Width, or number of sources.
+    size: u32,
+    seconds: f64,
+    integrals: f64,
+}
+
+impl Series {
+    /// Exponents of time and of integrals over the sizes from `from` on, by least squares of the logarithms.
+    fn exponents(&self, from: u32) -> (f64, f64) {
+        let points: Vec<&Point> = self.points.iter().filter(|p| p.size >= from).collect();
+        let fit = |value: fn(&Point) -> f64| {
+            let log = |p: &&Point| (f64::from(p.size).ln(), value(p).ln());
+            let count = points.len() as f64;
+            let (x, y) = points.iter().map(log).fold((0.0, 0.0), |sum, (x, y)| {
+                (sum.0 + x / count, sum.1 + y / count)
+            });
+            let (mut above, mut below) = (0.0, 0.0);
+            for (px, py) in points.iter().map(log) {
+                above += (px - x) * (py - y);
+                below += (px - x) * (px - x);
+            }
+            above / below
+        };
+        (fit(|p| p.seconds), fit(|p| p.integrals))
+    }
+
+    fn label(&self) -> String {
+        let sampling = match self.sampling {
+            Sampling::Tiles => "tiles",
+            Sampling::Pixels => "pixels",
+        };
+        format!("{}, {sampling}", self.name)
+    }
+}
+
+/// The tables' camera and decay.
+fn view() -> Scene {
+    let mut scene = Table::Torus.scene(512, 200);
+    scene.tori.clear();
+    scene.integration.method = Method::Exact;
+    scene
+}
+
+fn one_torus(width: u32) -> Scene {
+    Scene {
+        tori: Table::Torus.scene(1, 2).tori,
+        ..wide(width)
+    }
+}
+
+fn one_curve(width: u32) -> Scene {
+    Scene {
+        curves: Table::Bezier.scene(1, 2).curves,
+        ..wide(width)
+    }
+}
+
+fn wide(width: u32) -> Scene {
+    let mut scene = view();
+    scene.image = ImageSize {
+        width,
+        height: width * 9 / 16,
+    };
+    scene
+}
+
+fn points(count: u32) -> Vec<DVec3> {
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut point = || DVec3::from([0; 3].map(|_| 2.0 * random.f64() - 1.0));
+    (0..count).map(|_| point()).collect()
+}
+
+fn spheres(count: u32) -> Scene {
+    let mut scene = view();
+    scene.spheres = points(count)
+        .into_iter()
+        .map(|center| Sphere {
+            center,
+            ..Sphere::default()
+        })
+        .collect();
+    scene
+}
+
+fn curves(count: u32) -> Scene {
+    let mut scene = view();
+    let points = points(3 * count);
+    scene.curves = points
+        .chunks(3)
+        .map(|p| Curve {
+            control_points: [p[0], p[1], p[2]],
+            coefficient: 1.0,
+            color: DVec3::ONE,
+            intensity: None,
+        })
+        .collect();
+    scene
+}
+
+type Setup = (&'static str, fn(u32) -> Scene, &'static [u32]);
+
+/// Measures scenes at every size, tiles and pixels in turn.
+fn series(device: &Device, renderer: &mut Renderer, setups: &[Setup]) -> Vec<Series> {
+    let mut all = Vec::new();
+    for (name, scene, sizes) in setups {
+        let mut both = [Sampling::Tiles, Sampling::Pixels].map(|sampling| Series {
+            name,
+            sampling,
+            points: Vec::new(),
+        });
+        for size in *sizes {
+            for series in &mut both {
+                let mut scene = scene(*size);
+                scene.integration.sampling = Some(series.sampling);
+                let integrals = match series.sampling {
+                    Sampling::Tiles => exact_cost(device, &scene).unwrap().evaluations,
+                    Sampling::Pixels => (scene.image.pixels() * scene.source_count()) as u64,
+                };
+                series.points.push(Point {
+                    size: *size,
+                    seconds: 1.0 / measure(renderer, &scene, TIME).unwrap().fps,
+                    integrals: integrals as f64,
+                });
+                eprintln!("{name}, {size}");
+            }
+        }
+        all.extend(both);
+    }
+    all
+}
+
+fn table(text: &mut String, heading: &str, series: &[Series], fit_from: u32) {
+    let _ = writeln!(text, "\n{heading}\n");
+    for pair in series.chunks(2) {
+        let [tiles, pixels] = pair else { continue };
+        let _ = writeln!(
+            text,
+            "{}\n\n| | tiles, FPS | pixels, FPS | tiles / pixels | tiles, integrals | pixels, integrals |\n\
+             |---|---|---|---|---|---|",
+            tiles.name
+        );
+        for (t, p) in tiles.points.iter().zip(&pixels.points) {
+            let _ = writeln!(
+                text,
+                "| {} | {:.1} | {:.2} | {:.1} | {} | {} |",
+                t.size,
+                1.0 / t.seconds,
+                1.0 / p.seconds,
+                p.seconds / t.seconds,
+                t.integrals,
+                p.integrals
+            );
+        }
+        let (t, p) = (tiles.exponents(fit_from), pixels.exponents(fit_from));
+        let _ = writeln!(
+            text,
+            "\nFrom {fit_from} on time grows with the power {:.2} by tiles, {:.2} by pixels; integrals {:.2} and {:.2}.\n",
+            t.0, p.0, t.1, p.1
+        );
+    }
+}
+
+/// Seconds a frame against the size, both logarithmic.
+fn plot(path: &str, x_name: &str, series: &[Series]) {
+    let area = SVGBackend::new(path, (720, 440)).into_drawing_area();
+    area.fill(&WHITE).unwrap();
+    let points = || series.iter().flat_map(|s| &s.points);
+    let most_x = points().map(|p| p.size).max().unwrap_or(1);
+    let least_x = points().map(|p| p.size).min().unwrap_or(1);
+    let most_y = points().map(|p| p.seconds).fold(0.0, f64::max);
+    let least_y = points().map(|p| p.seconds).fold(1.0, f64::min);
+    let mut chart = ChartBuilder::on(&area)
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(56)
+        .build_cartesian_2d(
+            (f64::from(least_x)..f64::from(most_x) * 1.05).log_scale(),
+            (least_y / 1.5..most_y * 1.5).log_scale(),
+        )
+        .unwrap();
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .x_desc(x_name)
+        .y_desc("seconds a frame")
+        .x_label_formatter(&|x| format!("{x}"))
+        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .draw()
+        .unwrap();
+    let colors = [RGBColor(20, 70, 200), RGBColor(200, 80, 20)];
+    for (index, one) in series.iter().enumerate() {
+        let base = colors[index / 2 % 2];
+        let color = match one.sampling {
+            Sampling::Tiles => base.to_rgba(),
+            Sampling::Pixels => base.mix(0.4),
+        };
+        let points = one.points.iter().map(|p| (f64::from(p.size), p.seconds));
+        let line = LineSeries::new(points, color.stroke_width(2)).point_size(3);
+        chart
+            .draw_series(line)
+            .unwrap()
+            .label(one.label())
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3)));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .background_style(WHITE.mix(0.8))
+        .border_style(BLACK.mix(0.3))
+        .draw()
+        .unwrap();
+    area.present().unwrap();
+}
+
+#[allow(unsafe_code)] // one call that must come before everything else
+fn main() {
+    // SAFETY: nothing has started a thread yet.
+    unsafe { energywave::opencl::keep_pocl_threads_apart() };
+    let (device, mut renderer) = common::device();
+    let by_width = series(
+        &device,
+        &mut renderer,
+        &[
+            ("a torus", one_torus, &WIDTHS),
+            ("a curve", one_curve, &WIDTHS),
+        ],
+    );
+    let by_sources = series(
+        &device,
+        &mut renderer,
+        &[("spheres", spheres, &SPHERES), ("curves", curves, &CURVES)],
+    );
+    let mut text = common::header(&device, "cargo bench --bench scaling");
+    let heading = "By width, 16:9, the wave of the paper's tables:";
+    table(&mut text, heading, &by_width, 512);
+    let heading = "By number of sources in a cube of side 2, 512x512:";
+    table(&mut text, heading, &by_sources, 16);
+    println!("{text}");
+    if let Some(stem) = std::env::args().skip(1).find(|a| !a.starts_with("--")) {
+        std::fs::write(format!("{stem}.md"), &text).unwrap();
+        plot(&format!("{stem}-width.svg"), "width, pixels", &by_width);
+        plot(&format!("{stem}-sources.svg"), "sources", &by_sources);
+    }
+}
