@@ -72,6 +72,11 @@ float3v uniform3(const float4 v) {
     return r;
 }
 
+float3v add3(const float3v a, const float3v b) {
+    const float3v r = {a.x + b.x, a.y + b.y, a.z + b.z};
+    return r;
+}
+
 float3v subtract3(const float3v a, const float3v b) {
     const float3v r = {a.x - b.x, a.y - b.y, a.z - b.z};
     return r;

@@ -66,10 +66,10 @@
 #endif
 
 // Adds the light of the sources of one kind that a launch names.
-#define ADD_LIGHT(kind, list)                                                                                          \
+#define ADD_LIGHT(kind)                                                                                                \
     for (uint i = launch->kind##_begin; i < launch->kind##_end; ++i) {                                                 \
         const floatv integral = JOIN(METHOD, kind)(ray, sources, i, quadrature);                                       \
-        radiance = fma3(uniform3(sources->list[i].emission), integral, radiance);                                      \
+        radiance = fma3(uniform3(kind##_emission(sources, i)), integral, radiance);                                    \
     }
 
 // Linear RGB of the sources that a launch names, a ray in every lane.
@@ -77,16 +77,16 @@ INLINE float3v radiance_along(const Ray *const ray, const Sources *const sources
                               const Launch *const launch) {
     float3v radiance = uniform3((float4)(0.0f));
 #ifdef SPHERES
-    ADD_LIGHT(sphere, spheres)
+    ADD_LIGHT(sphere)
 #endif
 #ifdef CYLINDERS
-    ADD_LIGHT(cylinder, cylinders)
+    ADD_LIGHT(cylinder)
 #endif
 #ifdef TORI
-    ADD_LIGHT(torus, tori)
+    ADD_LIGHT(torus)
 #endif
 #ifdef CURVES
-    ADD_LIGHT(curve, curves)
+    ADD_LIGHT(curve)
 #endif
     return radiance;
 }

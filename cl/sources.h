@@ -9,3 +9,19 @@ typedef struct {
     __global const Curve *curves;
     __global const SplinePiece *spline_pieces;
 } Sources;
+
+float4 sphere_emission(const Sources *const sources, const uint index) {
+    return sources->spheres[index].emission;
+}
+
+float4 cylinder_emission(const Sources *const sources, const uint index) {
+    return sources->cylinders[index].emission;
+}
+
+float4 torus_emission(const Sources *const sources, const uint index) {
+    return sources->tori[index].emission;
+}
+
+float4 curve_emission(const Sources *const sources, const uint index) {
+    return sources->curves[index].emission;
+}

@@ -1,6 +1,6 @@
-// Square tiles of pixels whose light is interpolated from 16 of their pixels, the nodes: four in a row and four rows of
-// them, near the zeros of the Chebyshev polynomial. A group of work-items works on a tile, 16 rays at a time in rounds
-// of all their lanes: on a GPU 16 of one lane each, elsewhere a single one (PoCL 3.1 compiles barriers for hours).
+// Square tiles of pixels whose light is interpolated from 16 of their pixels, the nodes: four rows of four, near the
+// zeros of the Chebyshev polynomial. A group of work-items works on a tile, 16 rays at a time in rounds of all their
+// lanes: on a GPU 16 of one lane each, elsewhere a single one (PoCL 3.1 compiles barriers for hours).
 #pragma once
 #include "ray.h"
 #include "store.h"
@@ -104,47 +104,25 @@ INLINE floatv interpolate(__local const float *const values, const Basis *const 
     return interpolate_across(row, across);
 }
 
-// The largest of the highest two Chebyshev coefficients of four rows of values at once: of an even and an odd function.
+// The rays of a tile: through its nodes, and through the points where interpolation is tested, with the weights of the
+// nodes there.
 typedef struct {
-    float even, odd;
-} Coefficients;
+    Ray nodes[TILE_ROUNDS], tests[TILE_ROUNDS];
+    Basis across[TILE_ROUNDS], down[TILE_ROUNDS];
+} TileRays;
 
-float largest(const float4 v) {
-    const float2 two = fmax(fabs(v.lo), fabs(v.hi));
-    return fmax(two.x, two.y);
-}
-
-Coefficients highest_coefficients(const float q, const float4 v0, const float4 v1, const float4 v2, const float4 v3) {
-    const float scale = 0.25f / (1.0f - q * q);
-    const float4 even = (v0 + v3) - (v1 + v2), odd = (v3 - v0) - (v2 - v1) * (1.0f / q);
-    const Coefficients c = {scale * largest(even), 0.5f * scale * largest(odd)};
-    return c;
-}
-
-// Whether 16 shared numbers are all numbers, and none above 0.
-bool none_is_positive(__local const float *const values) {
-    bool none_is = true;
-    for (uint k = 0; k < TILE_RAYS; ++k)
-        none_is &= values[k] <= 0.0f;
-    return none_is;
-}
-
-// Whether values at the nodes look like those of a function that can be interpolated: the highest coefficients are
-// small beside the least value. Never where a value is not a number.
-bool seems_smooth(const TilePass *const pass, __local const float *const values) {
-    const float4 v0 = vload4(0, values), v1 = vload4(1, values), v2 = vload4(2, values), v3 = vload4(3, values);
-    const float4 sizes = fmin(fmin(fabs(v0), fabs(v1)), fmin(fabs(v2), fabs(v3)));
-    const float2 two = fmin(sizes.lo, sizes.hi);
-    const float least = fmin(two.x, two.y);
-    const float q = inner_place(pass);
-    const Coefficients down = highest_coefficients(q, v0, v1, v2, v3);
-    const Coefficients across =
-        highest_coefficients(q, (float4)(v0.x, v1.x, v2.x, v3.x), (float4)(v0.y, v1.y, v2.y, v3.y),
-                             (float4)(v0.z, v1.z, v2.z, v3.z), (float4)(v0.w, v1.w, v2.w, v3.w));
-    const float4 sums = (v0 + v1) + (v2 + v3);
-    const bool are_numbers = !isnan((sums.x + sums.y) + (sums.z + sums.w));
-    return are_numbers && fmax(down.even, across.even) <= pass->most_even * least &&
-           fmax(down.odd, across.odd) <= pass->most_odd * least;
+INLINE TileRays rays_of_tile(const View *const view, const TilePass *const pass, const Tile *const tile) {
+    TileRays rays;
+    for (uint round = 0; round < TILE_ROUNDS; ++round) {
+        const uintv ray = first_ray(round) + LANE_NUMBERS, column = ray & 3u, row = ray >> 2u;
+        rays.nodes[round] =
+            ray_through(view, tile->column + node_place(pass, column), tile->row + node_place(pass, row));
+        const uintv test_column = test_place(pass, column), test_row = test_place(pass, row);
+        rays.tests[round] = ray_through(view, tile->column + test_column, tile->row + test_row);
+        rays.across[round] = basis_at(pass, test_column);
+        rays.down[round] = basis_at(pass, test_row);
+    }
+    return rays;
 }
 
 // Writes (or adds to) the pixels of a block from the ray of this number on; the image has so many columns and rows of

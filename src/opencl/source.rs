@@ -38,6 +38,8 @@ embed!(
     "clearance.h",
     "store.h",
     "tile.h",
+    "smoothness.h",
+    "settle.h",
     "render.cl",
     "tiles.cl",
     "trace.cl",

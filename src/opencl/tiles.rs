@@ -78,6 +78,9 @@ fn reserve<T: bytemuck::Pod>(
     Ok(())
 }
 
+/// What float32 rays differ from each other anyway.
+const LEAST_TOLERANCE: f64 = 2e-5;
+
 /// How much of the tolerance an interpolation may use up where it is tested.
 const MOST_ERROR: f64 = 0.25;
 
@@ -100,6 +103,7 @@ pub(super) fn passes(
     let rows = part.pixels.len() as u32 / view.width;
     let columns = view.width.div_ceil(first_size);
     let tile_count = columns * rows.div_ceil(first_size);
+    let tolerance = tolerance.max(LEAST_TOLERANCE);
     let (most_odd, most_even) = most_coefficients(tolerance);
     let [x, y, z, _] = view.row_step;
     let last = (first_size / SMALLEST).ilog2();

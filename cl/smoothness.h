@@ -1,0 +1,61 @@
+// Whether a source's light on a tile is so smooth that its values at the nodes tell all others.
+#pragma once
+#include "tile.h"
+
+// Closer to a core than this many times a tile's side its light is taken for rough without a look.
+#ifndef LEAST_CLEARANCE
+#define LEAST_CLEARANCE 0.5f
+#endif
+
+float least_clearance2(const TilePass *const pass) {
+    const float least_clearance = LEAST_CLEARANCE * (float)pass->size;
+    return least_clearance * least_clearance;
+}
+
+// What an interpolation may be off by where it is tested; a test of the test gives up on it.
+#ifndef MOST_ERROR
+#define MOST_ERROR(pass) ((pass)->most_error)
+#endif
+
+// The largest of the highest two Chebyshev coefficients of four rows of values at once: of an even and an odd function.
+typedef struct {
+    float even, odd;
+} Coefficients;
+
+float largest(const float4 v) {
+    const float2 two = fmax(fabs(v.lo), fabs(v.hi));
+    return fmax(two.x, two.y);
+}
+
+Coefficients highest_coefficients(const float q, const float4 v0, const float4 v1, const float4 v2, const float4 v3) {
+    const float scale = 0.25f / (1.0f - q * q);
+    const float4 even = (v0 + v3) - (v1 + v2), odd = (v3 - v0) - (v2 - v1) * (1.0f / q);
+    const Coefficients c = {scale * largest(even), 0.5f * scale * largest(odd)};
+    return c;
+}
+
+// Whether 16 shared numbers are all numbers, and none above 0.
+bool none_is_positive(__local const float *const values) {
+    bool none_is = true;
+    for (uint k = 0; k < TILE_RAYS; ++k)
+        none_is &= values[k] <= 0.0f;
+    return none_is;
+}
+
+// Whether values at the nodes look like those of a function that can be interpolated: the highest coefficients are
+// small beside the least value. Never where a value is not a number.
+bool seems_smooth(const TilePass *const pass, __local const float *const values) {
+    const float4 v0 = vload4(0, values), v1 = vload4(1, values), v2 = vload4(2, values), v3 = vload4(3, values);
+    const float4 sizes = fmin(fmin(fabs(v0), fabs(v1)), fmin(fabs(v2), fabs(v3)));
+    const float2 two = fmin(sizes.lo, sizes.hi);
+    const float least = fmin(two.x, two.y);
+    const float q = inner_place(pass);
+    const Coefficients down = highest_coefficients(q, v0, v1, v2, v3);
+    const Coefficients across =
+        highest_coefficients(q, (float4)(v0.x, v1.x, v2.x, v3.x), (float4)(v0.y, v1.y, v2.y, v3.y),
+                             (float4)(v0.z, v1.z, v2.z, v3.z), (float4)(v0.w, v1.w, v2.w, v3.w));
+    const float4 sums = (v0 + v1) + (v2 + v3);
+    const bool are_numbers = !isnan((sums.x + sums.y) + (sums.z + sums.w));
+    return are_numbers && fmax(down.even, across.even) <= pass->most_even * least &&
+           fmax(down.odd, across.odd) <= pass->most_odd * least;
+}
