@@ -1,10 +1,18 @@
-// How far from a core's image a pixel is: the squared distance between ray and core, in pixels as large as they are
-// there. Less than a pixel or so from a core the image is not smooth.
+// How far from a core's image a pixel is, and which part of the core lights it. Less than a pixel or so from a core the
+// image is not smooth; nor is it where neighbours see different parts of a curve with a local intensity.
 #pragma once
 #include "field/cylinder.h"
 #include "field/sphere.h"
 #include "peaks/curve_panels.h"
 #include "peaks/torus.h"
+
+#define PLACES_SEEN 3
+
+typedef struct {
+    floatv distance2;         // between ray and core, squared, in pixels as large as they are there
+    floatv seen[PLACES_SEEN]; // from the ray's closest approach, its begin and its end: where on the core the nearest
+                              // point lies, in pieces of a local intensity; 0 where there is none
+} Clearance;
 
 // A squared distance from the point s of the ray, in pixels; `pixel_step` is the side of one on the projection plane.
 floatv in_pixels2(const Ray *const ray, const float pixel_step, const floatv s, const floatv distance2) {
@@ -12,21 +20,27 @@ floatv in_pixels2(const Ray *const ray, const float pixel_step, const floatv s, 
     return distance2 * inverse(side * side);
 }
 
+Clearance clear_by(const floatv distance2) {
+    const Clearance clearance = {distance2, {splat(0.0f), splat(0.0f), splat(0.0f)}};
+    return clearance;
+}
+
 // Lengths are doubled.
-floatv quadratic_clearance2(const Ray *const ray, const Quadratic *const distance2, const float pixel_step) {
+Clearance quadratic_clearance(const Ray *const ray, const Quadratic *const distance2, const float pixel_step) {
     const floatv s = clamp(nearest_along(distance2), 0.0f, 1.0f);
-    return in_pixels2(ray, pixel_step, s, 0.25f * quadratic_at(distance2, s));
+    return clear_by(in_pixels2(ray, pixel_step, s, 0.25f * quadratic_at(distance2, s)));
 }
 
-floatv sphere_clearance2(const Ray *const ray, const Sources *const sources, const uint index, const float pixel_step) {
-    const sphere_path path = sphere_along(ray, sources, index);
-    return quadratic_clearance2(ray, &path.distance2, pixel_step);
-}
-
-floatv cylinder_clearance2(const Ray *const ray, const Sources *const sources, const uint index,
+Clearance sphere_clearance(const Ray *const ray, const Sources *const sources, const uint index,
                            const float pixel_step) {
+    const sphere_path path = sphere_along(ray, sources, index);
+    return quadratic_clearance(ray, &path.distance2, pixel_step);
+}
+
+Clearance cylinder_clearance(const Ray *const ray, const Sources *const sources, const uint index,
+                             const float pixel_step) {
     const cylinder_path path = cylinder_along(ray, sources, index);
-    return quadratic_clearance2(ray, &path.distance2, pixel_step);
+    return quadratic_clearance(ray, &path.distance2, pixel_step);
 }
 
 // The distance of a peak from the ray, which it has in the complex plane.
@@ -37,17 +51,27 @@ floatv peak_clearance2(const Ray *const ray, const Peak peak, const float pixel_
     return in_pixels2(ray, pixel_step, s, distance2);
 }
 
-floatv torus_clearance2(const Ray *const ray, const Sources *const sources, const uint index, const float pixel_step) {
+Clearance torus_clearance(const Ray *const ray, const Sources *const sources, const uint index,
+                          const float pixel_step) {
     const torus_peaks peaks = torus_peaks_along(ray, sources, index);
-    return min(peak_clearance2(ray, peaks.first, pixel_step), peak_clearance2(ray, peaks.second, pixel_step));
+    return clear_by(min(peak_clearance2(ray, peaks.first, pixel_step), peak_clearance2(ray, peaks.second, pixel_step)));
 }
 
-// Both closest approaches of the ray's line, where the ray has them, and both ends of the ray. Lengths are doubled.
-floatv curve_clearance2(const Ray *const ray, const Sources *const sources, const uint index, const float pixel_step) {
+// Both closest approaches of the ray's line, where the ray has them. Lengths are doubled.
+Clearance curve_clearance(const Ray *const ray, const Sources *const sources, const uint index,
+                          const float pixel_step) {
     const curve_peaks peaks = curve_peaks_along(ray, sources, index);
     const curve_path *const path = &peaks.path;
-    const floatv first = clamp(peaks.first, 0.0f, 1.0f), second = clamp(peaks.second, 0.0f, 1.0f);
-    const floatv to_first2 = curve_seen_from(path, first).distance2 + path->softening2;
-    const floatv to_second2 = curve_seen_from(path, second).distance2 + path->softening2;
-    return 0.25f * min(in_pixels2(ray, pixel_step, first, to_first2), in_pixels2(ray, pixel_step, second, to_second2));
+    const curve_sight first = curve_seen_from(path, clamp(peaks.first, 0.0f, 1.0f));
+    const curve_sight second = curve_seen_from(path, clamp(peaks.second, 0.0f, 1.0f));
+    const floatv to_first2 = in_pixels2(ray, pixel_step, first.s, first.distance2 + path->softening2);
+    const floatv to_second2 = in_pixels2(ray, pixel_step, second.s, second.distance2 + path->softening2);
+    Clearance clearance = clear_by(0.25f * min(to_first2, to_second2));
+    if (path->spline_count) {
+        const float pieces = (float)path->spline_count;
+        clearance.seen[0] = pieces * select(first.x, second.x, to_second2 < to_first2);
+        clearance.seen[1] = pieces * curve_seen_from(path, splat(0.0f)).x;
+        clearance.seen[2] = pieces * curve_seen_from(path, splat(1.0f)).x;
+    }
+    return clearance;
 }

@@ -4,14 +4,19 @@ INLINE bool JOIN(settle_, FIELD)(const TileTask *const task, const TileRays *con
                                  __local TileMemory *const memory, uint *const integrals) {
     meet();
     for (uint round = 0; round < TILE_ROUNDS; ++round) {
-        const Ray *const ray = &rays->nodes[round];
-        const floatv clearance2 = JOIN(FIELD, _clearance2)(ray, task->sources, index, task->pass->pixel_step);
-        floatv integral = splat(NAN);
-        if (!any_lane(clearance2 < least_clearance2(task->pass))) {
-            integral = JOIN(exact_, FIELD)(ray, task->sources, index, task->quadrature);
-            *integrals += LANES;
-        }
+        const Clearance clearance =
+            JOIN(FIELD, _clearance)(&rays->nodes[round], task->sources, index, task->pass->pixel_step);
+        show(clearance.distance2, first_ray(round), memory->clearance2);
+        for (uint k = 0; k < PLACES_SEEN; ++k)
+            show(clearance.seen[k], first_ray(round), memory->seen[k]);
+    }
+    meet();
+    if (!is_clear(task->pass, memory->clearance2) || !all_see_one_part(memory->seen))
+        return false;
+    for (uint round = 0; round < TILE_ROUNDS; ++round) {
+        const floatv integral = JOIN(exact_, FIELD)(&rays->nodes[round], task->sources, index, task->quadrature);
         show(integral, first_ray(round), memory->integrals);
+        *integrals += LANES;
     }
     meet();
     if (!seems_smooth(task->pass, memory->integrals))

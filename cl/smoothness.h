@@ -1,5 +1,6 @@
 // Whether a source's light on a tile is so smooth that its values at the nodes tell all others.
 #pragma once
+#include "clearance.h"
 #include "tile.h"
 
 // Closer to a core than this many times a tile's side its light is taken for rough without a look.
@@ -7,9 +8,29 @@
 #define LEAST_CLEARANCE 0.5f
 #endif
 
-float least_clearance2(const TilePass *const pass) {
-    const float least_clearance = LEAST_CLEARANCE * (float)pass->size;
-    return least_clearance * least_clearance;
+bool is_clear(const TilePass *const pass, __local const float *const clearances2) {
+    const float least = LEAST_CLEARANCE * (float)pass->size;
+    bool are_clear = true;
+    for (uint k = 0; k < TILE_RAYS; ++k)
+        are_clear &= clearances2[k] >= least * least;
+    return are_clear;
+}
+
+// Where nodes see parts of a curve that lie farther apart than this, in pieces of its local intensity, what lies
+// between may show between the nodes: a short curve far away throws a stripe as wide as itself.
+#ifndef MOST_SPREAD
+#define MOST_SPREAD 0.5f
+#endif
+
+bool all_see_one_part(__local float (*const seen)[TILE_RAYS]) {
+    float most = 0.0f;
+    for (uint k = 0; k < PLACES_SEEN; ++k) {
+        float low = seen[k][0], high = low;
+        for (uint ray = 1; ray < TILE_RAYS; ++ray)
+            low = fmin(low, seen[k][ray]), high = fmax(high, seen[k][ray]);
+        most = fmax(most, high - low);
+    }
+    return most <= MOST_SPREAD;
 }
 
 // What an interpolation may be off by where it is tested; a test of the test gives up on it.

@@ -56,17 +56,18 @@ typedef struct {
     uint columns, rows; // that the image has
 } Clip;
 
-INLINE void store_clipped(__global float4 *const corner, const Clip clip, const float3v color, const uint accumulate) {
+INLINE void store_clipped(__global float4 *const corner, const Clip *const clip, const float3v color,
+                          const uint accumulate) {
     float red[LANES], green[LANES], blue[LANES];
     scatter(color.x, red);
     scatter(color.y, green);
     scatter(color.z, blue);
     for (uint lane = 0; lane < LANES; ++lane) {
-        const uint column = (clip.first_lane + lane) % clip.block_width;
-        const uint row = (clip.first_lane + lane) / clip.block_width;
-        if (column >= clip.columns || row >= clip.rows)
+        const uint column = (clip->first_lane + lane) % clip->block_width;
+        const uint row = (clip->first_lane + lane) / clip->block_width;
+        if (column >= clip->columns || row >= clip->rows)
             continue;
-        __global float4 *const pixel = corner + row * clip.pitch + column;
+        __global float4 *const pixel = corner + row * clip->pitch + column;
         const float4 before = accumulate ? *pixel : (float4)(0.0f);
         const float4 light = (float4)(red[lane], green[lane], blue[lane], 0.0f) + before;
         *pixel = (float4)(light.xyz, 1.0f);
@@ -82,5 +83,5 @@ INLINE void store_pixels(__global float4 *const pixels, const uint count, const 
     }
 #endif
     const Clip clip = {0, LANES, 0, count, 1};
-    store_clipped(pixels, clip, color, accumulate);
+    store_clipped(pixels, &clip, color, accumulate);
 }

@@ -52,12 +52,11 @@ uintv node_place(const TilePass *const pass, const uintv node) {
     return select(from_begin, pass->size - 1u - from_end, node > 1u);
 }
 
-// Pixel of a point between the nodes, where the interpolation is put to the test: there the first polynomial that it
-// cannot render is largest.
-uintv test_place(const TilePass *const pass, const uintv node) {
-    const uint outer = (15u * pass->size + 64u) / 128u, inner = 25u * pass->size / 64u;
-    const uintv from_begin = select((uintv)(outer), (uintv)(inner), (node & 1u) != 0u);
-    return select(from_begin, pass->size - 1u - from_begin, node > 1u);
+// Column (turn 1) or row (turn 7) of a point where the interpolation is put to the test: no two share either, so that
+// no stripe passes between them.
+uintv test_place(const TilePass *const pass, const uintv ray, const uint turn) {
+    const uintv sixteenth = (ray * turn + (turn >> 1u)) % TILE_RAYS;
+    return pass->size * (2u * sixteenth + 1u) / (2u * TILE_RAYS);
 }
 
 // Weights of the four nodes for a place between the first and the last, -1 to 1; the inner ones are at -q and q.
@@ -117,7 +116,7 @@ INLINE TileRays rays_of_tile(const View *const view, const TilePass *const pass,
         const uintv ray = first_ray(round) + LANE_NUMBERS, column = ray & 3u, row = ray >> 2u;
         rays.nodes[round] =
             ray_through(view, tile->column + node_place(pass, column), tile->row + node_place(pass, row));
-        const uintv test_column = test_place(pass, column), test_row = test_place(pass, row);
+        const uintv test_column = test_place(pass, ray, 1u), test_row = test_place(pass, ray, 7u);
         rays.tests[round] = ray_through(view, tile->column + test_column, tile->row + test_row);
         rays.across[round] = basis_at(pass, test_column);
         rays.down[round] = basis_at(pass, test_row);
@@ -137,5 +136,5 @@ INLINE void store_block(__global float4 *const corner, const uint ray, const uin
     }
 #endif
     const Clip clip = {ray, BLOCK_WIDTH, pitch, columns, rows};
-    store_clipped(corner, clip, color, accumulate);
+    store_clipped(corner, &clip, color, accumulate);
 }

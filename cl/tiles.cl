@@ -20,7 +20,7 @@ typedef struct {
 // What a group of work-items holds of a tile. Light is red, green and blue at 16 nodes.
 #define LIGHT_OF_TILE (3u * TILE_RAYS)
 typedef struct {
-    float integrals[TILE_RAYS]; // of one source at the nodes
+    float clearance2[TILE_RAYS], seen[PLACES_SEEN][TILE_RAYS], integrals[TILE_RAYS]; // of one source at the nodes
     float excess[TILE_RAYS];    // of the error where it is tested, over what is allowed
     float light[LIGHT_OF_TILE]; // of all sources that are smooth on the tile
     uint open[MOST_WORDS];      // a bit for each source that is not

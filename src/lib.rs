@@ -10,7 +10,8 @@
 //!           a quadratic curve, here times its local intensity                 eq. 8-17
 //! ```
 //!
-//! The integral is computed to a stated relative error, or summed by the paper's Simpson rule ([`scene::Method`]).
+//! The integral is computed to a stated relative error, or summed by the paper's Simpson rule ([`scene::Method`]); the
+//! former at every pixel near a source's core, at few pixels of a tile elsewhere ([`scene::Sampling`]).
 //!
 //! A [`Scene`] is packed, uploaded and integrated on a [`Device`] by a [`Renderer`] into a [`RadianceImage`], which is
 //! tone-mapped into a [`DisplayImage`]. [`mod@reference`] computes the same in float64 by another method.

@@ -149,6 +149,17 @@ fn hard_scenes() -> Vec<(&'static str, Scene)> {
     ));
     scenes.push(("a wide view past a core behind it", scene));
 
+    for (name, series) in [
+        ("a stripe as wide as a short curve", vec![1.0, 0.2, 1.0]),
+        ("a short curve with dark ends", vec![0.0, 1.0, 0.0]),
+    ] {
+        let mut scene = usual_view();
+        scene.image.height = 130;
+        let points = [88.0, 90.5, 93.0].map(|column| point_at(&scene, column, 20.0, 3.0));
+        scene.curves.push(common::curve(points, Some(series)));
+        scenes.push((name, scene));
+    }
+
     for softening in [0.002, 0.03, 0.4] {
         let mut scene = usual_view();
         scene.integration.softening = softening;
@@ -181,7 +192,7 @@ fn sampled(scene: &Scene, sampling: Sampling) -> Scene {
 }
 
 /// Accepts every interpolation that seems smooth at the nodes.
-const UNTESTED: &str = "-DLEAST_CLEARANCE=0.0f -DMOST_ERROR(pass)=1e9f";
+const UNTESTED: &str = "-DLEAST_CLEARANCE=0.0f -DMOST_SPREAD=1e9f -DMOST_ERROR(pass)=1e9f";
 
 #[test]
 fn hard_scenes_meet_every_tolerance_because_interpolations_are_tested() {
@@ -229,6 +240,25 @@ fn random_scenes_by_tiles_meet_the_tolerance_as_they_do_by_pixels() {
             assert!(meets(&tiles, tolerance), "seed {seed}: {tiles:?}");
         }
     }
+}
+
+#[test]
+fn sources_of_opposite_signs_are_taken_at_every_pixel() {
+    let mut renderer = renderer(common::device().lanes, "");
+    let mut scene = usual_view();
+    scene.spheres.push(common::sphere([0.2, 0.0, 0.1], 1.0));
+    scene.spheres.push(common::sphere([-0.3, 0.1, 0.0], 0.9));
+    assert_eq!(scene.sampling(), Sampling::Tiles);
+    let all = 2 * scene.image.pixels() as u64;
+    renderer.render(&scene).unwrap();
+    assert!(renderer.last_cost().evaluations < all / 2);
+    scene.spheres[1].coefficient = -0.9;
+    assert_eq!(scene.sampling(), Sampling::Pixels);
+    renderer.render(&scene).unwrap();
+    assert_eq!(renderer.last_cost().evaluations, all);
+    // Light that is negative everywhere cancels nothing.
+    scene.spheres[0].coefficient = -1.0;
+    assert_eq!(scene.sampling(), Sampling::Tiles);
 }
 
 #[test]

@@ -133,7 +133,7 @@ pub struct Overrides {
     /// Relative error aimed at by the exact method; chooses --method exact
     #[arg(long, value_parser = tolerance, allow_hyphen_values = true, requires = "scene")]
     pub tolerance: Option<f64>,
-    /// Where the exact method takes integrals; chooses --method exact
+    /// Where the exact method takes integrals [default: the scene's, else tiles]; chooses --method exact
     #[arg(long, requires = "scene")]
     pub sampling: Option<SamplingName>,
 }
@@ -142,7 +142,7 @@ pub struct Overrides {
 pub enum SamplingName {
     /// At every pixel
     Pixels,
-    /// At a few pixels of a tile, at every pixel near cores
+    /// At every pixel near cores, interpolated within the tolerance elsewhere
     Tiles,
 }
 

@@ -133,7 +133,7 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
         width: scene.image.width,
         height: scene.image.height,
         method: scene.integration.method,
-        sampling: scene.integration.sampling(),
+        sampling: scene.sampling(),
         fps: speed.fps,
         kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
         evaluations: cost.evaluations,

@@ -86,8 +86,7 @@ impl Kernels {
             }
         }
         if task.rays == Rays::Tiles {
-            let device = compute.device().device_type;
-            definitions += &tiles::definitions(tiles::workers(device, options));
+            definitions += &tiles::definitions(tiles::workers(compute.device(), options));
         }
         let options = BuildOptions {
             extra: format!("{definitions} {}", options.extra),

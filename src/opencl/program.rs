@@ -27,7 +27,7 @@ pub struct BuildOptions {
     pub lanes: Option<u32>,
     /// The quadrature of the method `exact`; `None`: what meets the scene's tolerance.
     pub rule: Option<Rule>,
-    /// Work-items that share a tile, at most 16 divided by the lanes; `None`: what suits the device.
+    /// Work-items that share a tile, no more than 16 divided by the lanes; `None`: as many on a GPU, 1 elsewhere.
     pub tile_workers: Option<u32>,
     /// Whether the method `exact` counts its nodes, for [`crate::renderer::FrameCost::field_evaluations`].
     pub counts_nodes: bool,

@@ -154,7 +154,7 @@ impl OpenClRenderer {
         let task = Task {
             method: Variant::of(scene.integration.method, rule),
             kinds: source_counts(&sources).map(|count| count > 0),
-            rays: match (rays, scene.integration.sampling()) {
+            rays: match (rays, scene.sampling()) {
                 (Some(_), _) => Rays::Listed,
                 (None, Sampling::Tiles) if scene.source_count() > 0 => Rays::Tiles,
                 (None, Sampling::Pixels | Sampling::Tiles) => Rays::Pixels,
@@ -359,7 +359,7 @@ impl OpenClRenderer {
             Rays::Listed => vec![enqueue(&[&lists.rays], items, group)?],
             Rays::Tiles => {
                 let units = self.device().compute_units;
-                let workers = tiles::workers(device, &self.options) as usize;
+                let workers = tiles::workers(self.device(), &self.options) as usize;
                 let enqueue = |pass: &layout::TilePass| {
                     let items = tiles::groups(pass, units) * workers;
                     enqueue(&[pass, places, light], items, workers)

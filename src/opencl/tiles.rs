@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::launch::{Part, word_count};
-use super::{BuildOptions, Compute, DeviceBuffer};
+use super::{BuildOptions, Compute, DeviceBuffer, OpenClDevice};
 use crate::device::DeviceType;
 use crate::error::Result;
 use crate::pack::{Sources, layout};
@@ -133,11 +133,13 @@ pub(super) fn passes(
 }
 
 /// Work-items of a group, which share the 16 nodes of a tile.
-pub(super) fn workers(device: DeviceType, options: &BuildOptions) -> u32 {
-    options.tile_workers.unwrap_or(match device {
-        DeviceType::Gpu => 16,
+pub(super) fn workers(device: &OpenClDevice, options: &BuildOptions) -> u32 {
+    let most = 16 / options.lanes.unwrap_or(device.lanes);
+    let suitable = match device.device_type {
+        DeviceType::Gpu => most,
         _ => 1,
-    })
+    };
+    options.tile_workers.unwrap_or(suitable).min(most)
 }
 
 /// Groups of work-items for a pass on a device of so many compute units.

@@ -62,6 +62,31 @@ impl Scene {
     pub fn source_count(&self) -> usize {
         self.spheres.len() + self.cylinders.len() + self.tori.len() + self.curves.len()
     }
+
+    /// Where a device takes this scene's integrals, see [`Sampling`].
+    pub fn sampling(&self) -> Sampling {
+        match self.integration.method {
+            Method::Simpson => Sampling::Pixels,
+            Method::Exact if self.has_light_of_both_signs() => Sampling::Pixels,
+            Method::Exact => self.integration.sampling.unwrap_or(Sampling::Tiles),
+        }
+    }
+
+    fn has_light_of_both_signs(&self) -> bool {
+        let spheres = self.spheres.iter().map(|s| (s.coefficient, s.color));
+        let cylinders = self.cylinders.iter().map(|c| (c.coefficient, c.color));
+        let tori = self.tori.iter().map(|t| (t.coefficient, t.color));
+        let curves = self.curves.iter().flat_map(|curve| {
+            let weights = curve.intensity.as_deref().unwrap_or(&[1.0]);
+            let light = |weight| (curve.coefficient * weight, curve.color);
+            weights.iter().map(light)
+        });
+        let lights = spheres.chain(cylinders).chain(tori).chain(curves);
+        let (low, high) = lights.fold((DVec3::ZERO, DVec3::ZERO), |(low, high), (k, color)| {
+            (low.min(k * color), high.max(k * color))
+        });
+        low.cmplt(DVec3::ZERO).any() && high.cmpgt(DVec3::ZERO).any()
+    }
 }
 
 /// A pinhole camera and the length of its rays.
@@ -185,16 +210,6 @@ impl Default for Integration {
     }
 }
 
-impl Integration {
-    /// Where integrals are taken. Simpson's rule takes every pixel.
-    pub fn sampling(&self) -> Sampling {
-        match self.method {
-            Method::Simpson => Sampling::Pixels,
-            Method::Exact => self.sampling.unwrap_or(Sampling::Tiles),
-        }
-    }
-}
-
 /// A quadrature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -212,7 +227,8 @@ pub enum Sampling {
     /// At every pixel.
     Pixels,
     /// Of each source, at every pixel near its core; elsewhere at a few pixels of a tile, the others interpolated within
-    /// the tolerance. The built-in reference takes every pixel.
+    /// the tolerance. Every pixel is taken all the same where sources of opposite signs cancel, whose errors do not, and
+    /// on the built-in reference.
     Tiles,
 }
 
