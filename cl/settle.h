@@ -6,13 +6,21 @@ INLINE bool JOIN(settle_, FIELD)(const TileTask *const task, const TileRays *con
     for (uint round = 0; round < TILE_ROUNDS; ++round) {
         const Clearance clearance =
             JOIN(FIELD, _clearance)(&rays->nodes[round], task->sources, index, task->pass->pixel_step);
-        show(clearance.distance2, first_ray(round), memory->clearance2);
+        const float least = LEAST_CLEARANCE * (float)task->pass->size;
+        show(least * least - clearance.distance2, first_ray(round), memory->excess);
+#ifdef HAS_PARTS
         for (uint k = 0; k < PLACES_SEEN; ++k)
             show(clearance.seen[k], first_ray(round), memory->seen[k]);
+#endif
     }
     meet();
-    if (!is_clear(task->pass, memory->clearance2) || !all_see_one_part(memory->seen))
+    if (!none_is_positive(memory->excess))
         return false;
+#ifdef HAS_PARTS
+    if (!all_see_one_part(memory->seen))
+        return false;
+#endif
+    meet();
     for (uint round = 0; round < TILE_ROUNDS; ++round) {
         const floatv integral = JOIN(exact_, FIELD)(&rays->nodes[round], task->sources, index, task->quadrature);
         show(integral, first_ray(round), memory->integrals);

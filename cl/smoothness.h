@@ -8,12 +8,12 @@
 #define LEAST_CLEARANCE 0.5f
 #endif
 
-bool is_clear(const TilePass *const pass, __local const float *const clearances2) {
-    const float least = LEAST_CLEARANCE * (float)pass->size;
-    bool are_clear = true;
-    for (uint k = 0; k < TILE_RAYS; ++k)
-        are_clear &= clearances2[k] >= least * least;
-    return are_clear;
+// Whether 16 shared numbers are all numbers, and none is above 0.
+bool none_is_positive(__local const float *const values) {
+    bool none_is = true;
+    for (uint ray = 0; ray < TILE_RAYS; ray += LANES)
+        none_is &= !any_lane(!(shown(ray, values) <= 0.0f));
+    return none_is;
 }
 
 // Where nodes see parts of a curve that lie farther apart than this, in pieces of its local intensity, what lies
@@ -27,8 +27,8 @@ bool all_see_one_part(__local float (*const seen)[TILE_RAYS]) {
     for (uint k = 0; k < PLACES_SEEN; ++k) {
         float low = seen[k][0], high = low;
         for (uint ray = 1; ray < TILE_RAYS; ++ray)
-            low = fmin(low, seen[k][ray]), high = fmax(high, seen[k][ray]);
-        most = fmax(most, high - low);
+            low = min(low, seen[k][ray]), high = max(high, seen[k][ray]);
+        most = max(most, high - low);
     }
     return most <= MOST_SPREAD;
 }
@@ -44,8 +44,8 @@ typedef struct {
 } Coefficients;
 
 float largest(const float4 v) {
-    const float2 two = fmax(fabs(v.lo), fabs(v.hi));
-    return fmax(two.x, two.y);
+    const float2 two = max(fabs(v.lo), fabs(v.hi));
+    return max(two.x, two.y);
 }
 
 Coefficients highest_coefficients(const float q, const float4 v0, const float4 v1, const float4 v2, const float4 v3) {
@@ -55,21 +55,13 @@ Coefficients highest_coefficients(const float q, const float4 v0, const float4 v
     return c;
 }
 
-// Whether 16 shared numbers are all numbers, and none above 0.
-bool none_is_positive(__local const float *const values) {
-    bool none_is = true;
-    for (uint k = 0; k < TILE_RAYS; ++k)
-        none_is &= values[k] <= 0.0f;
-    return none_is;
-}
-
 // Whether values at the nodes look like those of a function that can be interpolated: the highest coefficients are
 // small beside the least value. Never where a value is not a number.
 bool seems_smooth(const TilePass *const pass, __local const float *const values) {
     const float4 v0 = vload4(0, values), v1 = vload4(1, values), v2 = vload4(2, values), v3 = vload4(3, values);
-    const float4 sizes = fmin(fmin(fabs(v0), fabs(v1)), fmin(fabs(v2), fabs(v3)));
-    const float2 two = fmin(sizes.lo, sizes.hi);
-    const float least = fmin(two.x, two.y);
+    const float4 sizes = min(min(fabs(v0), fabs(v1)), min(fabs(v2), fabs(v3)));
+    const float2 two = min(sizes.lo, sizes.hi);
+    const float least = min(two.x, two.y);
     const float q = inner_place(pass);
     const Coefficients down = highest_coefficients(q, v0, v1, v2, v3);
     const Coefficients across =
@@ -77,6 +69,6 @@ bool seems_smooth(const TilePass *const pass, __local const float *const values)
                              (float4)(v0.z, v1.z, v2.z, v3.z), (float4)(v0.w, v1.w, v2.w, v3.w));
     const float4 sums = (v0 + v1) + (v2 + v3);
     const bool are_numbers = !isnan((sums.x + sums.y) + (sums.z + sums.w));
-    return are_numbers && fmax(down.even, across.even) <= pass->most_even * least &&
-           fmax(down.odd, across.odd) <= pass->most_odd * least;
+    return are_numbers && max(down.even, across.even) <= pass->most_even * least &&
+           max(down.odd, across.odd) <= pass->most_odd * least;
 }

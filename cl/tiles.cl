@@ -20,10 +20,10 @@ typedef struct {
 // What a group of work-items holds of a tile. Light is red, green and blue at 16 nodes.
 #define LIGHT_OF_TILE (3u * TILE_RAYS)
 typedef struct {
-    float clearance2[TILE_RAYS], seen[PLACES_SEEN][TILE_RAYS], integrals[TILE_RAYS]; // of one source at the nodes
-    float excess[TILE_RAYS];    // of the error where it is tested, over what is allowed
-    float light[LIGHT_OF_TILE]; // of all sources that are smooth on the tile
-    uint open[MOST_WORDS];      // a bit for each source that is not
+    float seen[PLACES_SEEN][TILE_RAYS], integrals[TILE_RAYS]; // of one source at the nodes
+    float excess[TILE_RAYS];                                  // of what is tested over what is allowed
+    float light[LIGHT_OF_TILE];                               // of all sources that are smooth on the tile
+    uint open[MOST_WORDS];                                    // a bit for each source that is not
     uint slot;
 } TileMemory;
 
@@ -66,7 +66,9 @@ void add_light(const float4 emission, const floatv integral, const uint ray, __l
 
 #ifdef CURVES
 #define FIELD curve
+#define HAS_PARTS
 #include "settle.h"
+#undef HAS_PARTS
 #undef FIELD
 #endif
 
