@@ -58,8 +58,8 @@ impl Pace {
         let affordable = self.evaluations / evaluations;
         let pixels = affordable.min(f64::from(left)) as u32;
         let grains = pixels.max(work.fewest_pixels).div_ceil(work.grain);
-        let most = (work.most_pixels / work.grain).max(1);
-        grains.min(most).saturating_mul(work.grain).min(left)
+        let pixels = grains.saturating_mul(work.grain);
+        pixels.min(work.most_pixels()).min(left)
     }
 
     /// How many of the next `left` sources to launch on so many pixels: up to twice the pace, rather than a second
@@ -72,6 +72,15 @@ impl Pace {
         } else {
             (affordable as u64).clamp(1, left)
         }
+    }
+}
+
+impl Work {
+    /// Pixels of a launch at most.
+    pub(super) fn most_pixels(&self) -> u32 {
+        (self.most_pixels / self.grain)
+            .max(1)
+            .saturating_mul(self.grain)
     }
 }
 

@@ -9,6 +9,7 @@ mod discover;
 mod failure;
 mod kernels;
 mod launch;
+mod lists;
 mod mapped;
 mod program;
 mod renderer;

@@ -9,10 +9,11 @@ use opencl3::event::Event;
 use super::counts::{self, Counts};
 use super::kernels::{Kernels, Rays, Task, Variant};
 use super::launch::{Pace, Part, Work, launch, source_count, source_counts};
+use super::lists::Lists;
 use super::mapped::Mapped;
 use super::program::{Argument, BuildOptions, enqueue, run_time, set_arguments};
 use super::tiles::{self, OpenTiles};
-use super::{Compute, DeviceBuffer, OpenClDevice, Uploaded};
+use super::{Compute, DeviceBuffer, OpenClDevice};
 use crate::device::DeviceType;
 use crate::error::{Error, Result};
 use crate::pack::{self, Rule, Sources, layout};
@@ -50,18 +51,6 @@ struct Launched {
 
 /// A larger output buffer would gain nothing; 8192x8192 pixels fit.
 const MOST_BAND_BYTES: u64 = 1 << 30;
-
-/// What the kernels read.
-#[derive(Debug)]
-struct Lists {
-    nodes: Uploaded<layout::Node>,
-    spheres: Uploaded<layout::Sphere>,
-    cylinders: Uploaded<layout::Cylinder>,
-    tori: Uploaded<layout::Torus>,
-    curves: Uploaded<layout::Curve>,
-    spline_pieces: Uploaded<layout::SplinePiece>,
-    rays: Uploaded<layout::RayRecord>,
-}
 
 /// One frame or one list of rays, packed.
 struct Job {
@@ -168,17 +157,7 @@ impl OpenClRenderer {
             Variant::Simpson => pack::nodes(scene.integration.divisions, scene.decay),
             Variant::Exact { .. } => Vec::new(),
         };
-        let lists = &mut self.lists;
-        lists.nodes.upload(&self.compute, &nodes)?;
-        lists.spheres.upload(&self.compute, &sources.spheres)?;
-        lists.cylinders.upload(&self.compute, &sources.cylinders)?;
-        lists.tori.upload(&self.compute, &sources.tori)?;
-        lists.curves.upload(&self.compute, &sources.curves)?;
-        let pieces = &sources.spline_pieces;
-        lists.spline_pieces.upload(&self.compute, pieces)?;
-        if let Some(rays) = rays {
-            lists.rays.upload(&self.compute, rays)?;
-        }
+        self.lists.upload(&self.compute, &nodes, &sources, rays)?;
         let units = self.device().compute_units;
         Ok(Job {
             view,
@@ -222,7 +201,7 @@ impl OpenClRenderer {
         let total = target.len() as f32;
         let band_len = self.band_len(target.len(), job.work.grain)?;
         let mut end = 0;
-        self.begin(job);
+        self.begin(job, target.len())?;
         for band in target.chunks_mut(band_len) {
             let begin = end;
             end += band.len() as u32;
@@ -231,7 +210,7 @@ impl OpenClRenderer {
             self.output()?.read(&self.compute, band)?;
             self.settle(job, last)?;
         }
-        self.settle_uploads()
+        self.lists.settle(&self.compute)
     }
 
     /// Renders into the device's own buffer and maps it: on a CPU, nothing is copied.
@@ -246,7 +225,7 @@ impl OpenClRenderer {
                 scene.image.height
             )));
         }
-        self.begin(&job);
+        self.begin(&job, pixels)?;
         let last = self.launch_band(&job, 0..pixels as u32, &mut |_| ControlFlow::Continue(()))?;
         let pointer = self.output()?.map(&self.compute, pixels)?;
         let mapped = Mapped {
@@ -255,25 +234,20 @@ impl OpenClRenderer {
             renderer: self,
         };
         mapped.renderer.settle(&job, last)?;
-        mapped.renderer.settle_uploads()?;
+        mapped.renderer.lists.settle(&mapped.renderer.compute)?;
         Ok(mapped)
     }
 
-    /// A copy that failed means a wrong image: it is asked for when everything is over.
-    fn settle_uploads(&mut self) -> Result<()> {
-        let (lists, compute) = (&mut self.lists, &self.compute);
-        lists.nodes.settle(compute)?;
-        lists.spheres.settle(compute)?;
-        lists.cylinders.settle(compute)?;
-        lists.tori.settle(compute)?;
-        lists.curves.settle(compute)?;
-        lists.spline_pieces.settle(compute)?;
-        lists.rays.settle(compute)
-    }
-
-    fn begin(&mut self, job: &Job) {
+    /// Begins a frame of so many pixels. The first makes room for the largest launches that may follow.
+    fn begin(&mut self, job: &Job, pixels: usize) -> Result<()> {
         self.pace.begin(&job.sources);
         self.cost = FrameCost::default();
+        let largest = Part {
+            pixels: 0..job.work.most_pixels().min(pixels as u32),
+            sources: 0..job.work.source_count.min(job.work.most_sources),
+        };
+        self.open_tiles
+            .reserve(&self.compute, &passes(job, &largest))
     }
 
     /// Launches all sources on a band of pixels. The last launch may still be under way.
@@ -315,13 +289,7 @@ impl OpenClRenderer {
     }
 
     fn launch(&mut self, job: &Job, part: &Part, slot: u32) -> Result<Launched> {
-        let passes = match job.task.rays {
-            Rays::Tiles => {
-                let size = job.first_tile_size;
-                tiles::passes(part, &job.sources, &job.view, size, job.tolerance)
-            }
-            Rays::Pixels | Rays::Listed => Vec::new(),
-        };
+        let passes = passes(job, part);
         self.open_tiles.reserve(&self.compute, &passes)?;
         if self.counts_in(job) {
             self.counts.reset(&self.compute)?;
@@ -437,16 +405,13 @@ impl OpenClRenderer {
     }
 }
 
-impl Lists {
-    fn new() -> Self {
-        Self {
-            nodes: Uploaded::new("the list of quadrature nodes"),
-            spheres: Uploaded::new("the list of spheres"),
-            cylinders: Uploaded::new("the list of cylinders"),
-            tori: Uploaded::new("the list of tori"),
-            curves: Uploaded::new("the list of curves"),
-            spline_pieces: Uploaded::new("the list of spline pieces"),
-            rays: Uploaded::new("the list of rays"),
+/// The passes of a part; none where no tiles are wanted.
+fn passes(job: &Job, part: &Part) -> Vec<layout::TilePass> {
+    match job.task.rays {
+        Rays::Tiles => {
+            let size = job.first_tile_size;
+            tiles::passes(part, &job.sources, &job.view, size, job.tolerance)
         }
+        Rays::Pixels | Rays::Listed => Vec::new(),
     }
 }

@@ -151,3 +151,50 @@ pub(super) fn groups(pass: &layout::TilePass, units: u32) -> usize {
 fn inner(size: u32) -> u32 {
     9 * size / 32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(width: u32, height: u32) -> ImageSize {
+        ImageSize { width, height }
+    }
+
+    #[test]
+    fn the_first_tiles_grow_with_the_image() {
+        let sizes = [1, 512, 1024, 1025, 1920, 3840, 16384].map(|side| first_size(image(side, 1)));
+        assert_eq!(sizes, [64, 64, 64, 64, 128, 256, 256]);
+        assert_eq!(first_size(image(1, 3840)), 256);
+    }
+
+    #[test]
+    fn passes_halve_the_tiles_and_keep_lists_of_their_own() {
+        let sources = Sources {
+            spheres: vec![bytemuck::Zeroable::zeroed(); 33],
+            tori: vec![bytemuck::Zeroable::zeroed(); 2],
+            ..Sources::default()
+        };
+        let view = layout::View {
+            width: 1000,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let part = Part {
+            pixels: 0..1000 * 300,
+            sources: 0..35,
+        };
+        let passes = passes(&part, &sources, &view, 128, 1e-3);
+        let sizes: Vec<u32> = passes.iter().map(|pass| pass.size).collect();
+        assert_eq!(sizes, [128, 64, 32, 16, 8]);
+        assert!(passes.len() <= MOST_PASSES);
+        assert_eq!((passes[0].columns, passes[0].tile_count), (8, 24));
+        for pair in passes.windows(2) {
+            assert_eq!(pair[1].read_from, pair[0].write_to);
+            let most_open = 24 << (2 * pair[0].level);
+            assert_eq!(pair[1].write_to, pair[0].write_to + most_open);
+            assert_eq!(pair[1].parent_inner, pair[0].inner);
+        }
+        assert_eq!(passes.last().map(|pass| pass.is_last), Some(1));
+        // 33 spheres take two words, the tori one of their own.
+        assert_eq!(passes[0].word_count, 3);
+    }
+}
