@@ -7,6 +7,7 @@ mod compute;
 mod counts;
 mod discover;
 mod failure;
+mod job;
 mod kernels;
 mod launch;
 mod lists;

@@ -1,14 +1,14 @@
 //! Renders scenes on an OpenCL device: uploads what changed, launches the kernels, reads the image back.
 
 use std::ops::{ControlFlow, Range};
-
 use std::time::Duration;
 
 use opencl3::event::Event;
 
 use super::counts::{self, Counts};
-use super::kernels::{Kernels, Rays, Task, Variant};
-use super::launch::{Pace, Part, Work, launch, source_count, source_counts};
+use super::job::Job;
+use super::kernels::{Kernels, Rays, Variant};
+use super::launch::{Pace, Part, launch};
 use super::lists::Lists;
 use super::mapped::Mapped;
 use super::program::{Argument, BuildOptions, enqueue, run_time, set_arguments};
@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::pack::{self, Rule, Sources, layout};
 use crate::ray::{Ray, ViewPlane};
 use crate::renderer::FrameCost;
-use crate::scene::{Sampling, Scene};
+use crate::scene::Scene;
 
 /// A pixel of the output: linear RGBA.
 type Pixel = [f32; 4];
@@ -51,17 +51,6 @@ struct Launched {
 
 /// A larger output buffer would gain nothing; 8192x8192 pixels fit.
 const MOST_BAND_BYTES: u64 = 1 << 30;
-
-/// One frame or one list of rays, packed.
-struct Job {
-    view: layout::View,
-    sources: Sources,
-    work: Work,
-    task: Task,
-    tolerance: f64,
-    /// Side of the largest tiles, pixels.
-    first_tile_size: u32,
-}
 
 impl OpenClRenderer {
     /// Opens a device. Kernels are built when a scene first needs them.
@@ -135,60 +124,17 @@ impl OpenClRenderer {
         rays: Option<&[layout::RayRecord]>,
     ) -> Result<Job> {
         let rule = self.options.rule.unwrap_or(Rule::of(&scene.integration));
-        let view = layout::View {
-            torus_threshold: rule.torus_threshold,
-            curve_threshold: rule.curve_threshold,
-            ..view
-        };
-        let task = Task {
-            method: Variant::of(scene.integration.method, rule),
-            kinds: source_counts(&sources).map(|count| count > 0),
-            rays: match (rays, scene.sampling()) {
-                (Some(_), _) => Rays::Listed,
-                (None, Sampling::Tiles) if scene.source_count() > 0 => Rays::Tiles,
-                (None, Sampling::Pixels | Sampling::Tiles) => Rays::Pixels,
-            },
-        };
-        let first_tile_size = tiles::first_size(scene.image);
-        let is_tiled = task.rays == Rays::Tiles;
+        let units = self.device().compute_units;
+        let job = Job::new(scene, rule, view, sources, rays.is_some(), units);
         self.kernels
-            .prepare(&self.compute, &self.options, task, &rule)?;
-        let nodes = match task.method {
+            .prepare(&self.compute, &self.options, job.task, &rule)?;
+        let nodes = match job.task.method {
             Variant::Simpson => pack::nodes(scene.integration.divisions, scene.decay),
             Variant::Exact { .. } => Vec::new(),
         };
-        self.lists.upload(&self.compute, &nodes, &sources, rays)?;
-        let units = self.device().compute_units;
-        Ok(Job {
-            view,
-            work: Work {
-                node_count: match task.method {
-                    Variant::Simpson => nodes.len() as u32,
-                    Variant::Exact { nodes, .. } => 8 * nodes,
-                },
-                source_count: source_count(&sources),
-                fewest_pixels: (256 * units).max(1024),
-                grain: if is_tiled {
-                    first_tile_size * view.width
-                } else {
-                    1
-                },
-                most_pixels: if is_tiled {
-                    tiles::MOST_PIXELS
-                } else {
-                    u32::MAX
-                },
-                most_sources: if is_tiled {
-                    tiles::MOST_SOURCES
-                } else {
-                    u64::MAX
-                },
-            },
-            sources,
-            task,
-            tolerance: scene.integration.tolerance,
-            first_tile_size,
-        })
+        self.lists
+            .upload(&self.compute, &nodes, &job.sources, rays)?;
+        Ok(job)
     }
 
     /// Renders all of `target` in bands that fit into one buffer of the device.
@@ -247,7 +193,7 @@ impl OpenClRenderer {
             sources: 0..job.work.source_count.min(job.work.most_sources),
         };
         self.open_tiles
-            .reserve(&self.compute, &passes(job, &largest))
+            .reserve(&self.compute, &job.passes(&largest))
     }
 
     /// Launches all sources on a band of pixels. The last launch may still be under way.
@@ -289,7 +235,7 @@ impl OpenClRenderer {
     }
 
     fn launch(&mut self, job: &Job, part: &Part, slot: u32) -> Result<Launched> {
-        let passes = passes(job, part);
+        let passes = job.passes(part);
         self.open_tiles.reserve(&self.compute, &passes)?;
         if self.counts_in(job) {
             self.counts.reset(&self.compute)?;
@@ -402,16 +348,5 @@ impl OpenClRenderer {
             }
         }
         Ok(wanted.max(1))
-    }
-}
-
-/// The passes of a part; none where no tiles are wanted.
-fn passes(job: &Job, part: &Part) -> Vec<layout::TilePass> {
-    match job.task.rays {
-        Rays::Tiles => {
-            let size = job.first_tile_size;
-            tiles::passes(part, &job.sources, &job.view, size, job.tolerance)
-        }
-        Rays::Pixels | Rays::Listed => Vec::new(),
     }
 }

@@ -1,0 +1,84 @@
+//! One frame or one list of rays, packed, with what its launches may take.
+
+use super::kernels::{Rays, Task, Variant};
+use super::launch::{Part, Work, source_count, source_counts};
+use super::tiles;
+use crate::pack::{Rule, Sources, layout};
+use crate::scene::{Sampling, Scene};
+
+#[derive(Debug)]
+pub(super) struct Job {
+    pub view: layout::View,
+    pub sources: Sources,
+    pub work: Work,
+    pub task: Task,
+    tolerance: f64,
+    /// Side of the largest tiles, pixels.
+    first_tile_size: u32,
+}
+
+impl Job {
+    /// `is_listed`: single rays instead of an image's; `units`: the device's compute units.
+    pub(super) fn new(
+        scene: &Scene,
+        rule: Rule,
+        view: layout::View,
+        sources: Sources,
+        is_listed: bool,
+        units: u32,
+    ) -> Self {
+        let view = layout::View {
+            torus_threshold: rule.torus_threshold,
+            curve_threshold: rule.curve_threshold,
+            ..view
+        };
+        let task = Task {
+            method: Variant::of(scene.integration.method, rule),
+            kinds: source_counts(&sources).map(|count| count > 0),
+            rays: match scene.sampling() {
+                _ if is_listed => Rays::Listed,
+                Sampling::Tiles if scene.source_count() > 0 => Rays::Tiles,
+                Sampling::Pixels | Sampling::Tiles => Rays::Pixels,
+            },
+        };
+        let first_tile_size = tiles::first_size(scene.image);
+        let (grain, most_pixels, most_sources) = match task.rays {
+            Rays::Tiles => (
+                first_tile_size * view.width,
+                tiles::MOST_PIXELS,
+                tiles::MOST_SOURCES,
+            ),
+            Rays::Pixels | Rays::Listed => (1, u32::MAX, u64::MAX),
+        };
+        let work = Work {
+            node_count: match task.method {
+                Variant::Simpson => scene.integration.divisions + 1,
+                Variant::Exact { nodes, .. } => 8 * nodes,
+            },
+            source_count: source_count(&sources),
+            fewest_pixels: (256 * units).max(1024),
+            grain,
+            most_pixels,
+            most_sources,
+        };
+        Self {
+            view,
+            sources,
+            work,
+            task,
+            tolerance: scene.integration.tolerance,
+            first_tile_size,
+        }
+    }
+
+    /// The passes of a part; none where no tiles are wanted.
+    pub(super) fn passes(&self, part: &Part) -> Vec<layout::TilePass> {
+        match self.task.rays {
+            Rays::Tiles => {
+                let size = self.first_tile_size;
+                tiles::passes(part, &self.sources, &self.view, size, self.tolerance)
+            }
+            Rays::Pixels | Rays::Listed => Vec::new(),
+        }
+    }
+}
