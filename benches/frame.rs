@@ -48,33 +48,22 @@ fn crowd(kind: &str, count: u32) -> Scene {
     scene.tori.clear();
     let mut random = fastrand::Rng::with_seed(1);
     let mut point = || DVec3::from([0; 3].map(|_| 2.0 * random.f64() - 1.0));
-    let (coefficient, color) = (1.0, DVec3::ONE);
     for _ in 0..count {
         match kind {
             "spheres" => scene.spheres.push(Sphere {
                 center: point(),
-                coefficient,
-                color,
+                ..Sphere::default()
             }),
             "cylinders" => scene.cylinders.push(Cylinder {
                 point: point(),
-                direction: point(),
-                coefficient,
-                color,
+                ..Cylinder::new(point())
             }),
             "tori" => scene.tori.push(Torus {
                 center: point(),
                 axis: point(),
-                major_radius: 0.5,
-                coefficient,
-                color,
+                ..Torus::new(0.5)
             }),
-            _ => scene.curves.push(Curve {
-                control_points: [point(), point(), point()],
-                coefficient,
-                color,
-                intensity: None,
-            }),
+            _ => scene.curves.push(Curve::new([point(), point(), point()])),
         }
     }
     scene

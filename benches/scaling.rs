@@ -118,12 +118,7 @@ fn curves(count: u32) -> Scene {
     let points = points(3 * count);
     scene.curves = points
         .chunks(3)
-        .map(|p| Curve {
-            control_points: [p[0], p[1], p[2]],
-            coefficient: 1.0,
-            color: DVec3::ONE,
-            intensity: None,
-        })
+        .map(|p| Curve::new([p[0], p[1], p[2]]))
         .collect();
     scene
 }

@@ -1,6 +1,7 @@
 // How far from a core's image a pixel is, and which part of the core lights it. Less than a pixel or so from a core the
 // image is not smooth; nor is it where neighbours see different parts of a curve with a local intensity.
 #pragma once
+#include "field/beam.h"
 #include "field/cylinder.h"
 #include "field/sphere.h"
 #include "peaks/curve_panels.h"
@@ -27,7 +28,7 @@ Clearance clear_by(const floatv distance2) {
 
 // Lengths are doubled.
 Clearance quadratic_clearance(const Ray *const ray, const Quadratic *const distance2, const float pixel_step) {
-    const floatv s = clamp(nearest_along(distance2), 0.0f, 1.0f);
+    const floatv s = clamp(nearest_along(distance2), 0.0f, ray->end);
     return clear_by(in_pixels2(ray, pixel_step, s, 0.25f * quadratic_at(distance2, s)));
 }
 
@@ -43,9 +44,21 @@ Clearance cylinder_clearance(const Ray *const ray, const Sources *const sources,
     return quadratic_clearance(ray, &path.distance2, pixel_step);
 }
 
+// The line ahead of the tip, or the tip. Lengths are doubled.
+Clearance beam_clearance(const Ray *const ray, const Sources *const sources, const uint index, const float pixel_step) {
+    const beam_path path = beam_along(ray, sources, index);
+    const floatv s = clamp(nearest_along(&path.to_line), 0.0f, ray->end);
+    const floatv height = fma(path.height_slope, s, path.height);
+    const intv is_ahead =
+        path.per_taper > 0.0f ? fma(height, splat(path.per_taper), splat(1.0f)) >= 0.0f : height >= 0.0f;
+    const Clearance of_line = quadratic_clearance(ray, &path.to_line, pixel_step);
+    const Clearance of_tip = quadratic_clearance(ray, &path.to_tip, pixel_step);
+    return clear_by(select(of_tip.distance2, min(of_line.distance2, of_tip.distance2), is_ahead));
+}
+
 // The distance of a peak from the ray, which it has in the complex plane.
 floatv peak_clearance2(const Ray *const ray, const Peak peak, const float pixel_step) {
-    const floatv s = clamp(peak.re, 0.0f, 1.0f);
+    const floatv s = clamp(peak.re, 0.0f, ray->end);
     const floatv beyond = peak.re - s;
     const floatv distance2 = fma(beyond, beyond, peak.im * peak.im) * ray->length * ray->length;
     return in_pixels2(ray, pixel_step, s, distance2);
@@ -62,8 +75,8 @@ Clearance curve_clearance(const Ray *const ray, const Sources *const sources, co
                           const float pixel_step) {
     const curve_peaks peaks = curve_peaks_along(ray, sources, index);
     const curve_path *const path = &peaks.path;
-    const curve_sight first = curve_seen_from(path, clamp(peaks.first, 0.0f, 1.0f));
-    const curve_sight second = curve_seen_from(path, clamp(peaks.second, 0.0f, 1.0f));
+    const curve_sight first = curve_seen_from(path, clamp(peaks.first, 0.0f, ray->end));
+    const curve_sight second = curve_seen_from(path, clamp(peaks.second, 0.0f, ray->end));
     const floatv to_first2 = in_pixels2(ray, pixel_step, first.s, first.distance2 + path->softening2);
     const floatv to_second2 = in_pixels2(ray, pixel_step, second.s, second.distance2 + path->softening2);
     Clearance clearance = clear_by(0.25f * min(to_first2, to_second2));
@@ -71,7 +84,7 @@ Clearance curve_clearance(const Ray *const ray, const Sources *const sources, co
         const float pieces = (float)path->spline_count;
         clearance.seen[0] = pieces * select(first.x, second.x, to_second2 < to_first2);
         clearance.seen[1] = pieces * curve_seen_from(path, splat(0.0f)).x;
-        clearance.seen[2] = pieces * curve_seen_from(path, splat(1.0f)).x;
+        clearance.seen[2] = pieces * curve_seen_from(path, ray->end).x;
     }
     return clearance;
 }

@@ -1,7 +1,9 @@
-// Powers of two and logarithms in float32: OpenCL's own are exact to the last digit, and slower than a whole panel of
-// nodes may be on a CPU.
+// Powers of two, logarithms and arctangents in float32: OpenCL's own are exact to the last digit, and slower than a
+// whole panel of nodes may be on a CPU.
 #pragma once
 #include "lanes.h"
+
+#define LN_2 0.693147181f
 
 // 2^x for |x| below 120: a power of two times a minimax polynomial of the rest; within 2e-7.
 floatv power_of_two(const floatv x) {
@@ -27,4 +29,17 @@ floatv binary_logarithm(const floatv x) {
     const floatv d = fma(splat(-1.457445055e-1f), m, splat(2.368904340e-1f));
     const floatv r = fma(fma(fma(d, m2, c), m2, b), m2, a);
     return fma(r, m, to_floatv(bits >> 23));
+}
+
+// atan(x) / x for x^2 up to 1: a minimax polynomial, within 1e-7.
+floatv arctangent_ratio(const floatv x2) {
+    floatv r = splat(2.766283480e-3f);
+    r = fma(r, x2, splat(-1.573124904e-2f));
+    r = fma(r, x2, splat(4.213762345e-2f));
+    r = fma(r, x2, splat(-7.456854814e-2f));
+    r = fma(r, x2, splat(1.061837063e-1f));
+    r = fma(r, x2, splat(-1.419779779e-1f));
+    r = fma(r, x2, splat(1.999187203e-1f));
+    r = fma(r, x2, splat(-3.333303671e-1f));
+    return fma(r, x2, splat(9.999999818e-1f));
 }

@@ -2,13 +2,14 @@
 // host chooses the method, with -D EXACT the integrals themselves, else the Simpson sums of the paper, and the kinds of
 // source that a scene has: what it has not costs it neither compiling nor registers.
 #pragma once
+#include "field/beam.h"
 #include "field/curve.h"
 #include "field/cylinder.h"
 #include "field/sphere.h"
 #include "field/torus.h"
-#include "integrate/closed_form.h"
 #include "integrate/panel.h"
 #include "integrate/quadrature.h"
+#include "integrate/stretch.h"
 #include "peaks/curve_panels.h"
 #include "peaks/torus.h"
 
@@ -31,6 +32,16 @@
 #define FIELD cylinder
 #ifdef EXACT
 #include "integrate/closed.h"
+#else
+#include "integrate/simpson.h"
+#endif
+#undef FIELD
+#endif
+
+#ifdef BEAMS
+#define FIELD beam
+#ifdef EXACT
+#include "integrate/beam.h"
 #else
 #include "integrate/simpson.h"
 #endif
@@ -81,6 +92,9 @@ INLINE float3v radiance_along(const Ray *const ray, const Sources *const sources
 #endif
 #ifdef CYLINDERS
     ADD_LIGHT(cylinder)
+#endif
+#ifdef BEAMS
+    ADD_LIGHT(beam)
 #endif
 #ifdef TORI
     ADD_LIGHT(torus)

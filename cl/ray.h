@@ -14,6 +14,7 @@ typedef struct {
     floatv length;     // |E - S|
     floatv softening2; // added to every squared distance
     floatv floor2;     // no squared distance is taken below this: rays through a core stay finite
+    floatv end;        // where something hides the light, as a parameter s; 1 where nothing does
 } Ray;
 
 INLINE Ray make_ray(const fine3v origin, const fine3v toward, const floatv stretch, const floatv length,
@@ -27,11 +28,31 @@ INLINE Ray make_ray(const fine3v origin, const fine3v toward, const floatv stret
     ray.length = length;
     ray.softening2 = splat(softening2);
     ray.floor2 = CORE_FLOOR * CORE_FLOOR * length * length;
+    ray.end = splat(1.0f);
     return ray;
 }
 
+// The pixels and what their rays end at.
+typedef struct {
+    const View *view;
+    __global const float *depths; // of every pixel, row by row
+} Screen;
+
+// Where the depth of a pixel ends its ray (Abe, Watanabe 2010, eq. 13, 14): depths begin at the eye, s at the
+// projection plane. Pixels beside the image take the depth of the nearest one in it.
+INLINE floatv end_by_depth(const Screen *const screen, const Ray *const ray, const uintv column, const uintv row) {
+    const View *const view = screen->view;
+    const uintv inside = min(row, (uintv)(view->height - 1u)) * view->width + min(column, (uintv)(view->width - 1u));
+    const floatv depth = gather(screen->depths, as_intv(inside));
+    const floatv per_stretch = inverse(ray->stretch); // |S - eye| / |E - S|
+    const floatv s = view->near_plane > 0.0f ? (depth - view->near_plane) * per_stretch * (1.0f / view->near_plane)
+                                             : fma(depth, splat(1.0f / view->ray_length), -per_stretch);
+    return clamp(s, 0.0f, 1.0f);
+}
+
 // The rays through the centres of pixels.
-INLINE Ray ray_through(const View *const view, const uintv column, const uintv row) {
+INLINE Ray ray_through(const Screen *const screen, const uintv column, const uintv row) {
+    const View *const view = screen->view;
     const fine3v first = fine3(view->first_pixel, view->first_pixel_rest);
     const fine3v row_step = fine3(view->row_step, view->row_step_rest);
     const fine3v column_step = fine3(view->column_step, view->column_step_rest);
@@ -39,12 +60,17 @@ INLINE Ray ray_through(const View *const view, const uintv column, const uintv r
     const fine3v origin = fine_fma3(column_step, count_to_finev(column), in_row);
     const float3v toward = from_fine3(origin);
     const floatv stretch = 0.5f * view->ray_length * twice_inverse_sqrt_(dot3(toward, toward));
-    return make_ray(origin, origin, stretch, splat(view->ray_length), view->softening2);
+    Ray ray = make_ray(origin, origin, stretch, splat(view->ray_length), view->softening2);
+#ifdef DEPTH
+    ray.end = end_by_depth(screen, &ray, column, row);
+#endif
+    return ray;
 }
 
 // The rays of LANES consecutive pixels from this index on, row by row from the top left. Lanes beyond a row's end wrap
 // round to the next one.
-INLINE Ray pixel_ray(const View *const view, const uint first) {
+INLINE Ray pixel_ray(const Screen *const screen, const uint first) {
+    const View *const view = screen->view;
     const uint first_row = first / view->width;
     uintv row = (uintv)(first_row);
     uintv column = first - first_row * view->width + LANE_NUMBERS;
@@ -53,7 +79,7 @@ INLINE Ray pixel_ray(const View *const view, const uint first) {
         row += is_beyond;
         column -= is_beyond * view->width;
     }
-    return ray_through(view, column, row);
+    return ray_through(screen, column, row);
 }
 
 // L(s) - M, M given in two parts. Panels that meet in s meet here too: s is not rounded again.

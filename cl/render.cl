@@ -5,16 +5,18 @@
 
 __kernel void render(const View view, const Launch launch, __global const Node *const restrict nodes,
                      __global const Sphere *const restrict spheres, __global const Cylinder *const restrict cylinders,
-                     __global const Torus *const restrict tori, __global const Curve *const restrict curves,
+                     __global const Beam *const restrict beams, __global const Torus *const restrict tori,
+                     __global const Curve *const restrict curves,
                      __global const SplinePiece *const restrict spline_pieces, __global uint *const restrict counts,
-                     __global float4 *const restrict image) {
+                     __global const float *const restrict depths, __global float4 *const restrict image) {
     const uint begin = get_global_id(0) * LANES;
     if (begin >= launch.count)
         return;
-    const Sources sources = {spheres, cylinders, tori, curves, spline_pieces};
+    const Sources sources = {spheres, cylinders, beams, tori, curves, spline_pieces};
     const Quadrature quadrature = {
         nodes, launch.node_count, decay_of(&view), view.torus_threshold, view.curve_threshold, counts};
-    const Ray ray = pixel_ray(&view, launch.first + begin);
+    const Screen screen = {&view, depths};
+    const Ray ray = pixel_ray(&screen, launch.first + begin);
     const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch);
     store_pixels(image + launch.slot + begin, LAST_LANES(launch.count - begin), radiance, launch.accumulate);
 }

@@ -1,7 +1,14 @@
+#ifdef DEPTH
+INLINE floatv JOIN(FIELD, _at_end)(const Ray *const ray, const Sources *const sources, const uint index) {
+    const JOIN(FIELD, _path) path = JOIN(FIELD, _along)(ray, sources, index);
+    return JOIN(FIELD, _field)(&path, ray->end);
+}
+#endif
+
 // The light of one source at the nodes of a tile, given to the tile's light if it is smooth there. Whether it is.
 // Included once for each FIELD.
-INLINE bool JOIN(settle_, FIELD)(const TileTask *const task, const TileRays *const rays, const uint index,
-                                 __local TileMemory *const memory, uint *const integrals) {
+INLINE bool JOIN(settle_, FIELD)(const TileTask *const task, const TileRays *const rays, const float end_error,
+                                 const uint index, __local TileMemory *const memory, uint *const integrals) {
     meet();
     for (uint round = 0; round < TILE_ROUNDS; ++round) {
         const Clearance clearance =
@@ -25,8 +32,18 @@ INLINE bool JOIN(settle_, FIELD)(const TileTask *const task, const TileRays *con
         const floatv integral = JOIN(exact_, FIELD)(&rays->nodes[round], task->sources, index, task->quadrature);
         show(integral, first_ray(round), memory->integrals);
         *integrals += LANES;
+#ifdef DEPTH
+        const floatv at_end = JOIN(FIELD, _at_end)(&rays->nodes[round], task->sources, index);
+        const floatv light_at_end = at_end * decay_at(task->quadrature->decay, rays->nodes[round].end);
+        show(end_error * fabs(light_at_end) - MOST_ERROR(task->pass) * fabs(integral), first_ray(round),
+             memory->excess);
+#endif
     }
     meet();
+#ifdef DEPTH
+    if (!none_is_positive(memory->excess))
+        return false;
+#endif
     if (!seems_smooth(task->pass, memory->integrals))
         return false;
     for (uint round = 0; round < TILE_ROUNDS; ++round) {

@@ -5,6 +5,7 @@
 typedef struct {
     __global const Sphere *spheres;
     __global const Cylinder *cylinders;
+    __global const Beam *beams;
     __global const Torus *tori;
     __global const Curve *curves;
     __global const SplinePiece *spline_pieces;
@@ -16,6 +17,10 @@ float4 sphere_emission(const Sources *const sources, const uint index) {
 
 float4 cylinder_emission(const Sources *const sources, const uint index) {
     return sources->cylinders[index].emission;
+}
+
+float4 beam_emission(const Sources *const sources, const uint index) {
+    return sources->beams[index].emission;
 }
 
 float4 torus_emission(const Sources *const sources, const uint index) {

@@ -110,14 +110,14 @@ typedef struct {
     Basis across[TILE_ROUNDS], down[TILE_ROUNDS];
 } TileRays;
 
-INLINE TileRays rays_of_tile(const View *const view, const TilePass *const pass, const Tile *const tile) {
+INLINE TileRays rays_of_tile(const Screen *const screen, const TilePass *const pass, const Tile *const tile) {
     TileRays rays;
     for (uint round = 0; round < TILE_ROUNDS; ++round) {
         const uintv ray = first_ray(round) + LANE_NUMBERS, column = ray & 3u, row = ray >> 2u;
         rays.nodes[round] =
-            ray_through(view, tile->column + node_place(pass, column), tile->row + node_place(pass, row));
+            ray_through(screen, tile->column + node_place(pass, column), tile->row + node_place(pass, row));
         const uintv test_column = test_place(pass, ray, 1u), test_row = test_place(pass, ray, 7u);
-        rays.tests[round] = ray_through(view, tile->column + test_column, tile->row + test_row);
+        rays.tests[round] = ray_through(screen, tile->column + test_column, tile->row + test_row);
         rays.across[round] = basis_at(pass, test_column);
         rays.down[round] = basis_at(pass, test_row);
     }

@@ -2,6 +2,7 @@
 // it is not, the next pass looks at the tile's quarters, and the last one at each pixel. So every source costs most
 // next to its core, whatever the others do.
 #include "clearance.h"
+#include "hiding.h"
 #include "radiance.h"
 #include "smoothness.h"
 #include "store.h"
@@ -9,7 +10,7 @@
 
 // What all tiles of a pass have in common.
 typedef struct {
-    const View *view;
+    const Screen *screen;
     const Launch *launch;
     const TilePass *pass;
     const Sources *sources;
@@ -58,6 +59,12 @@ void add_light(const float4 emission, const floatv integral, const uint ray, __l
 #undef FIELD
 #endif
 
+#ifdef BEAMS
+#define FIELD beam
+#include "settle.h"
+#undef FIELD
+#endif
+
 #ifdef TORI
 #define FIELD torus
 #include "settle.h"
@@ -86,10 +93,11 @@ uint lowest_bit(const uint bits) {
 #define SETTLE(kind)                                                                                                   \
     for (uint begin = launch->kind##_begin; begin < launch->kind##_end; begin += 32u, ++word) {                        \
         uint open = 0;                                                                                                 \
-        for (uint left = parent_open ? parent_open[word] : first_bits(launch->kind##_end - begin); left != 0;          \
-             left &= left - 1u) {                                                                                      \
+        const uint all = parent_open ? parent_open[word] : first_bits(launch->kind##_end - begin);                     \
+        for (uint left = hiding.is_dark ? 0u : all; left != 0; left &= left - 1u) {                                    \
             const uint bit = lowest_bit(left);                                                                         \
-            if (!settle_##kind(task, &rays, begin + bit, memory, &integrals))                                          \
+            if (hiding.end_error > MOST_END_ERROR ||                                                                   \
+                !settle_##kind(task, &rays, hiding.end_error, begin + bit, memory, &integrals))                        \
                 open |= 1u << bit;                                                                                     \
         }                                                                                                              \
         if (get_local_id(0) == 0)                                                                                      \
@@ -101,13 +109,18 @@ uint lowest_bit(const uint bits) {
 INLINE bool settle_sources(const TileTask *const task, const Tile *const tile, __global const uint *const parent_open,
                            __local TileMemory *const memory) {
     const Launch *const launch = task->launch;
-    const TileRays rays = rays_of_tile(task->view, task->pass, tile);
+    const TileRays rays = rays_of_tile(task->screen, task->pass, tile);
+    const Hiding hiding =
+        hiding_of_tile(task->screen, task->pass, tile, &rays, task->end_row, memory->integrals, memory->excess);
     uint word = 0, is_open = 0, integrals = 0;
 #ifdef SPHERES
     SETTLE(sphere)
 #endif
 #ifdef CYLINDERS
     SETTLE(cylinder)
+#endif
+#ifdef BEAMS
+    SETTLE(beam)
 #endif
 #ifdef TORI
     SETTLE(torus)
@@ -143,6 +156,9 @@ INLINE float3v open_light_along(const TileTask *const task, const Ray *const ray
 #ifdef CYLINDERS
     ADD_OPEN(cylinder)
 #endif
+#ifdef BEAMS
+    ADD_OPEN(beam)
+#endif
 #ifdef TORI
     ADD_OPEN(torus)
 #endif
@@ -156,7 +172,7 @@ INLINE float3v open_light_along(const TileTask *const task, const Ray *const ray
 INLINE void paint_tile(const TileTask *const task, const Tile *const tile, const bool is_open,
                        __local const TileMemory *const memory, __global float4 *const image) {
     const TilePass *const pass = task->pass;
-    const uint width = task->view->width;
+    const uint width = task->screen->view->width;
     uint integrals = 0;
     for (uint y = 0; y < pass->size && tile->row + y < task->end_row; y += BLOCK_HEIGHT) {
         for (uint round = 0; round < TILE_ROUNDS; ++round) {
@@ -172,7 +188,7 @@ INLINE void paint_tile(const TileTask *const task, const Tile *const tile, const
                 float3v radiance = {interpolate_across(red, &across), interpolate_across(green, &across),
                                     interpolate_across(blue, &across)};
                 if (is_open) {
-                    const Ray ray = ray_through(task->view, tile->column + column, tile->row + row);
+                    const Ray ray = ray_through(task->screen, tile->column + column, tile->row + row);
                     radiance = add3(radiance, open_light_along(task, &ray, memory, &integrals));
                 }
                 const uint corner = (tile->row + y) * width + tile->column + x;
@@ -226,7 +242,7 @@ INLINE void leave_open(const TileTask *const task, const Tile *const tile, __loc
 INLINE void render_tile(const TileTask *const task, const uint number, const OpenTiles open,
                         __local TileMemory *const memory, __global float4 *const image) {
     const TilePass *const pass = task->pass;
-    const uint width = task->view->width;
+    const uint width = task->screen->view->width;
     const bool has_parent = pass->level > 0;
     const uint slot = pass->read_from + number / 4u;
     __global const uint *const parent_place = open.tiles + slot * (OPEN_TILE_PLACE + pass->word_count);
@@ -256,15 +272,17 @@ INLINE void render_tile(const TileTask *const task, const uint number, const Ope
 __kernel __attribute__((reqd_work_group_size(TILE_WORKERS, 1, 1))) void
 tiles(const View view, const Launch launch, __global const Node *const restrict nodes,
       __global const Sphere *const restrict spheres, __global const Cylinder *const restrict cylinders,
-      __global const Torus *const restrict tori, __global const Curve *const restrict curves,
-      __global const SplinePiece *const restrict spline_pieces, __global uint *const restrict counts,
+      __global const Beam *const restrict beams, __global const Torus *const restrict tori,
+      __global const Curve *const restrict curves, __global const SplinePiece *const restrict spline_pieces,
+      __global uint *const restrict counts, __global const float *const restrict depths,
       __global float4 *const restrict image, const TilePass pass, __global uint *const restrict open_tiles,
       __global float *const restrict open_light) {
     __local TileMemory memory;
-    const Sources sources = {spheres, cylinders, tori, curves, spline_pieces};
+    const Sources sources = {spheres, cylinders, beams, tori, curves, spline_pieces};
     const Quadrature quadrature = {nodes, 0, decay_of(&view), view.torus_threshold, view.curve_threshold, counts};
     const OpenTiles open = {open_tiles, open_light};
-    const TileTask task = {&view, &launch, &pass, &sources, &quadrature, (launch.first + launch.count) / view.width};
+    const Screen screen = {&view, depths};
+    const TileTask task = {&screen, &launch, &pass, &sources, &quadrature, (launch.first + launch.count) / view.width};
     const uint count = pass.level == 0 ? pass.tile_count : 4u * counts[COUNT_OPEN_TILES + pass.level - 1u];
     for (uint number = get_group_id(0); number < count; number += get_num_groups(0))
         render_tile(&task, number, open, &memory, image);

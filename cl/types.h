@@ -18,6 +18,11 @@ typedef struct {
     float decay_per_beta;                   // 1 / beta; 0 without decay
     float torus_threshold, curve_threshold; // method exact: how large unresolved coefficients may be, of the integral
     uint width;                             // pixels in a row
+    uint height;
+    float near_plane; // where depths are taken along the axis of view, the eye's distance from the projection plane; 0:
+                      // they are taken along the ray
+    float hides_all;  // a depth up to here hides all of any ray
+    float hides_nothing; // and one from here on nothing
 } View;
 
 // One launch: which pixels (or rays), and which part of each list of sources.
@@ -31,7 +36,8 @@ typedef struct {
     uint cylinder_begin, cylinder_end;
     uint torus_begin, torus_end;
     uint curve_begin, curve_end;
-    uint padding_0, padding_1, padding_2;
+    uint beam_begin, beam_end;
+    uint padding;
 } Launch;
 
 // One pass over tiles of one size, squares of pixels. The first has the largest, each of the others what the one before
@@ -67,20 +73,37 @@ typedef struct {
 typedef struct {
     float4 center, center_rest;
     float4 emission;
+    uint is_square; // in all sources: 1 if the field is 1 over the squared distance
+    uint padding_0, padding_1, padding_2;
 } Sphere;
 
 typedef struct {
     float4 point, point_rest;         // the point of the line nearest to the eye
     float4 direction, direction_rest; // unit
     float4 emission;
+    uint is_square;
+    uint padding_0, padding_1, padding_2;
 } Cylinder;
+
+typedef struct {
+    float4 tip, tip_rest;
+    float4 point, point_rest;         // the point of the line nearest to the eye
+    float4 direction, direction_rest; // unit
+    float4 emission;                  // colour alone, times |E - S| where light is measured by length
+    float line, cap, sphere; // coefficients: of the line ahead of the tip, of the point behind it, of the point
+                             // everywhere
+    float per_taper;         // 1 over the length of the taper behind the tip; 0 without
+    uint is_square;
+    uint padding_0, padding_1, padding_2;
+} Beam;
 
 typedef struct {
     float4 center, center_rest;
     float4 axis, axis_rest; // unit
     float4 emission;
     float major_radius, major_radius_rest;
-    float padding_0, padding_1;
+    uint is_square;
+    uint padding;
 } Torus;
 
 // C(t) - C(1/2) = along * (velocity_along x) + across * (velocity_across x + bend x^2), with x = t - 1/2.
@@ -99,7 +122,7 @@ typedef struct {
     uint is_straight;  // 1: so straight that the cubic for the nearest point degenerates
     uint spline_begin; // first of its pieces in the list of spline pieces
     uint spline_count; // pieces of its local-intensity series; 0: intensity 1
-    uint padding;
+    uint is_square;
 } Curve;
 
 // One piece of a quadratic B-spline: S = c0 + c1 x + c2 x^2, x in [0,1] over the piece.
@@ -116,6 +139,7 @@ CHECK_SIZE(RayRecord, SIZEOF_RAYRECORD);
 CHECK_SIZE(Node, SIZEOF_NODE);
 CHECK_SIZE(Sphere, SIZEOF_SPHERE);
 CHECK_SIZE(Cylinder, SIZEOF_CYLINDER);
+CHECK_SIZE(Beam, SIZEOF_BEAM);
 CHECK_SIZE(Torus, SIZEOF_TORUS);
 CHECK_SIZE(Curve, SIZEOF_CURVE);
 CHECK_SIZE(SplinePiece, SIZEOF_SPLINEPIECE);

@@ -87,21 +87,16 @@ impl Table {
         scene.integration.divisions = divisions;
         match self {
             Self::Torus => scene.tori.push(Torus {
-                center: DVec3::ZERO,
-                axis: DVec3::Z,
-                major_radius: 0.9,
                 coefficient: 5.1,
-                color: DVec3::ONE,
+                ..Torus::new(0.9)
             }),
             Self::Bezier => scene.curves.push(Curve {
-                control_points: [
+                coefficient: 5.0,
+                ..Curve::new([
                     DVec3::new(-1.2, -0.2, 0.1),
                     DVec3::new(-0.6, 1.1, -0.3),
                     DVec3::new(0.0, 0.0, 0.1),
-                ],
-                coefficient: 5.0,
-                color: DVec3::ONE,
-                intensity: None,
+                ])
             }),
         }
         scene

@@ -25,11 +25,9 @@
 //! let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
 //! scene.decay = Some(Decay { alpha: 0.1, beta: 0.1 });
 //! scene.tori.push(Torus {
-//!     center: DVec3::ZERO,
-//!     axis: DVec3::Z,
-//!     major_radius: 0.9,
 //!     coefficient: 5.1,
 //!     color: DVec3::new(0.15, 0.35, 1.0),
+//!     ..Torus::new(0.9)
 //! });
 //! let mut renderer = Renderer::new(&Device::best())?; // keeps kernels and buffers from frame to frame
 //! let radiance = renderer.render(&scene)?; // linear RGBA in float32

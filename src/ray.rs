@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::image::DepthAlong;
 use crate::scene::{Camera, ImageSize};
 
 /// A stretch of a view ray, from S (s = 0) to E (s = 1), world units.
@@ -58,6 +59,8 @@ pub struct ViewPlane {
     pub row_step: DVec3,
     /// `|E - S|`, world units.
     pub ray_length: f64,
+    /// From the eye to the plane, along the direction of view, world units.
+    pub near: f64,
 }
 
 impl ViewPlane {
@@ -80,7 +83,20 @@ impl ViewPlane {
             column_step,
             row_step,
             ray_length: camera.ray_length(),
+            near: camera.near,
         }
+    }
+
+    /// The parameter s, in `[0,1]`, at which a pixel's ray ends: g, or 1 if it is not hidden (Abe, Watanabe 2010, eq. 13,
+    /// 14). A depth begins at the eye, s at the plane.
+    pub fn end(&self, ray: &Ray, depth: f32, along: DepthAlong) -> f64 {
+        let to_plane = ray.origin.distance(self.eye);
+        let depth = f64::from(depth);
+        let distance = match along {
+            DepthAlong::Ray => depth,
+            DepthAlong::Axis => depth * to_plane / self.near,
+        };
+        ((distance - to_plane) / self.ray_length).clamp(0.0, 1.0)
     }
 
     /// The ray through the centre of a pixel.

@@ -182,7 +182,8 @@ impl Renderer {
         }
     }
 
-    /// Linear RGB along single rays, light measured over the parameter s; the scene's camera and image play no part.
+    /// Linear RGB along single rays, light measured over the parameter s; the scene's camera,
+    /// image and depth play no part.
     ///
     /// # Errors
     /// As [`Renderer::render`]; [`Error::Scene`] also for a ray that [`Ray::fault`] refuses.
@@ -205,7 +206,7 @@ impl Renderer {
                 let tracer = Tracer::new(scene, scene.integration.method, 1.0);
                 Ok(rays
                     .iter()
-                    .map(|ray| tracer.radiance(ray).to_array())
+                    .map(|ray| tracer.radiance(ray, 1.0).to_array())
                     .collect())
             }
         }

@@ -9,7 +9,9 @@ use crate::error::{Error, Result};
 use crate::ray::Ray;
 use crate::reference;
 use crate::renderer::Renderer;
-use crate::scene::{Camera, Curve, Cylinder, Decay, Method, Scene, Sphere, Torus};
+use crate::scene::{
+    Beam, Camera, Curve, Cylinder, Decay, Method, Profile, Scene, Sphere, Torus,
+};
 
 /// The rays that every copy of the crate carries.
 const BUILT_IN: &str = include_str!("../tests/data/rays.json");
@@ -43,12 +45,15 @@ pub struct KnownRay {
     pub exact: f64,
     /// Its composite Simpson sum with 200 divisions.
     pub simpson_200: f64,
-    /// Centre of a sphere or torus, point of a cylinder.
+    /// Centre of a sphere or torus, point of a cylinder, tip of a beam.
     #[serde(default)]
     pub center: DVec3,
-    /// Direction of a cylinder.
+    /// Direction of a cylinder or beam.
     #[serde(default)]
     pub direction: DVec3,
+    /// How far behind its tip a beam fades.
+    #[serde(default)]
+    pub taper_length: f64,
     /// Axis of a torus.
     #[serde(default)]
     pub axis: DVec3,
@@ -149,23 +154,32 @@ impl KnownRay {
             }),
             "cylinder" => scene.cylinders.push(Cylinder {
                 point: self.center,
-                direction: self.direction,
-                coefficient: 1.0,
-                color: DVec3::ONE,
+                ..Cylinder::new(self.direction)
+            }),
+            "beam" => scene.beams.push(Beam {
+                tip: self.center,
+                ..Beam::new(self.direction)
+            }),
+            "sphere-inverse-square" => scene.spheres.push(Sphere {
+                center: self.center,
+                profile: Profile::InverseSquare,
+                ..Sphere::default()
+            }),
+            "beam-inverse-square" => scene.beams.push(Beam {
+                tip: self.center,
+                taper_length: Some(self.taper_length),
+                profile: Profile::InverseSquare,
+                ..Beam::new(self.direction)
             }),
             "torus" => scene.tori.push(Torus {
                 center: self.center,
                 axis: self.axis,
-                major_radius: self.major_radius,
-                coefficient: 1.0,
-                color: DVec3::ONE,
+                ..Torus::new(self.major_radius)
             }),
             "curve" | "curve-weighted" | "curve-straight" | "curve-cusp" => {
                 scene.curves.push(Curve {
-                    control_points: self.control_points,
-                    coefficient: 1.0,
-                    color: DVec3::ONE,
                     intensity: (!self.weights.is_empty()).then(|| self.weights.clone()),
+                    ..Curve::new(self.control_points)
                 });
             }
             _ => return None,

@@ -34,10 +34,9 @@ fn through_a_core(kind: Kind) -> Scene {
             .tori
             .push(common::torus([0.0, 1.0, 0.0], [0.0, 0.3, 1.0], 1.0)),
         Kind::Curve => scene.curves.push(Curve {
-            control_points: [[-1.0, 0.2, -0.5], [0.0, -0.2, 0.0], [1.0, 0.2, 0.5]].map(DVec3::from),
             coefficient: white.0,
             color: white.1,
-            intensity: None,
+            ..Curve::new([[-1.0, 0.2, -0.5], [0.0, -0.2, 0.0], [1.0, 0.2, 0.5]].map(DVec3::from))
         }),
     }
     if kind == Kind::Torus {

@@ -6,6 +6,7 @@
 #include "../roots.h"
 #include "../sources.h"
 #include "cubic.h"
+#include "profile.h"
 #include "spline.h"
 
 // A value that is linear along the ray: at + s slope.
@@ -28,7 +29,7 @@ typedef struct {
     Linear p, h;                  // of the cubic u^3 + 3 p u + 2 h = 0 for u = t - 1/2 + vertex
     float velocity_along, velocity_across, bend, vertex;
     float inverse_speed2; // 1 / |C'(1/2)|^2, 0 for a point
-    uint is_straight, spline_count;
+    uint is_straight, is_square, spline_count;
     __global const SplinePiece *pieces;
     floatv softening2, floor2;
 } curve_path;
@@ -46,6 +47,7 @@ INLINE curve_path curve_along(const Ray *const ray, const Sources *const sources
     path.bend = 2.0f * curve->bend;
     path.vertex = curve->vertex;
     path.is_straight = curve->is_straight;
+    path.is_square = IS_SQUARE(curve);
     path.spline_count = curve->spline_count;
     path.pieces = sources->spline_pieces + curve->spline_begin;
     path.softening2 = 4.0f * ray->softening2;
@@ -178,6 +180,7 @@ INLINE floatv curve_field(const curve_path *const path, const floatv s) {
     const curve_point point = curve_point_at(path, s);
     floatv distance2;
     const floatv x = nearest_on_curve(path, &point, &distance2);
-    const floatv field = twice_inverse_sqrt(max(distance2 + path->softening2, path->floor2));
+    const floatv per_distance = twice_inverse_sqrt(max(distance2 + path->softening2, path->floor2));
+    const floatv field = profiled(per_distance, path->is_square);
     return path->spline_count ? field * curve_intensity(path, x) : field;
 }

@@ -4,6 +4,6 @@
 INLINE floatv JOIN(exact_, FIELD)(const Ray *const ray, const Sources *const sources, const uint index,
                                   const Quadrature *const quadrature) {
     const JOIN(FIELD, _path) path = JOIN(FIELD, _along)(ray, sources, index);
-    // Twice, because lengths are doubled.
-    return 2.0f * closed_form(&path.distance2, path.floor2, quadrature->decay, splat(0.0f), splat(1.0f));
+    const Stretch all = evenly_lit(splat(0.0f), ray->end);
+    return integral_over(all, &path.distance2, path.floor2, quadrature->decay, path.is_square);
 }

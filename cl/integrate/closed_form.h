@@ -1,14 +1,66 @@
-// The integral of zeta(s) / sqrt((slope s + offset)^2 + least) over a part of a ray, in closed form: a point or a
-// straight line of light (Abe, Watanabe 2010, eq. 8; with decay the same after the change of variable in decay.h).
+// The integral of zeta(s) / sqrt((slope s + offset)^2 + least) over a stretch of a ray, in closed form: a point or a
+// straight line of light (Abe, Watanabe 2010, eq. 8; with decay the same after the change of variable in decay.h). The
+// light may grow or fall linearly over the stretch.
 //
-// With n = beta / (s + beta), or 1, and f = n times the distance, f^2 is a quadratic a v^2 + .. in v. Let D be the
-// advance of v and F the sum of f at both ends. Then sqrt(a) / 2 times the integral of dv / f is artanh(m), m = sqrt(a)
-// D / F, the potential of a line seen from a point, and of n dv / f what follows from it with 1/a taken out by hand: no
-// difference of large terms is left, neither for far nor for near ends, nor where a is 0.
+// With n = beta / (s + beta), or 1, and f = n times the distance, f^2 is a quadratic a v^2 + .. in v, and n times the
+// light is linear in v. Let D be the advance of v and F the sum of f at both ends. Then sqrt(a) / 2 times the integral
+// of dv / f is artanh(m), m = sqrt(a) D / F, the potential of a line seen from a point, and with a linear factor what
+// follows from it with 1/a taken out by hand: no difference of large terms is left, neither for far nor for near ends,
+// nor where a is 0.
 #pragma once
 #include "../decay.h"
 #include "../elementary.h"
+#include "../field/profile.h"
 #include "../field/quadratic.h"
+#include "../ray.h"
+
+// A part of a ray, and the light at its ends; linear in s between.
+typedef struct {
+    floatv from, to;
+    floatv light_from, light_to;
+} Stretch;
+
+Stretch evenly_lit(const floatv from, const floatv to) {
+    const Stretch stretch = {from, to, splat(1.0f), splat(1.0f)};
+    return stretch;
+}
+
+Stretch part_of(const Stretch stretch, const floatv from, const floatv to) {
+    const floatv per_length = inverse(max(stretch.to - stretch.from, 1e-30f));
+    const floatv growth = (stretch.light_to - stretch.light_from) * per_length;
+    const Stretch part = {from, to, fma(growth, from - stretch.from, stretch.light_from),
+                          fma(growth, to - stretch.from, stretch.light_from)};
+    return part;
+}
+
+// What a stretch comes to in v: index 0 its beginning, 1 its end.
+typedef struct {
+    floatv advance; // of v
+    floatv n0, n1;
+    floatv l0, l1;  // n times the light
+    floatv f0, f1;  // n times the distance
+    floatv f0f1, g; // and what has (f0 f1)^2 - g^2 = least (rate advance)^2
+    floatv rate;
+    floatv a; // of f^2 = a v^2 + ..
+} Ends;
+
+INLINE Ends ends_of(const Quadratic *const distance2, const Decay decay, const Stretch stretch) {
+    const floatv least = distance2->least;
+    const floatv x0 = fma(distance2->slope, stretch.from, distance2->offset);
+    const floatv x1 = fma(distance2->slope, stretch.to, distance2->offset);
+    Ends ends;
+    ends.n0 = nearness(decay, stretch.from), ends.n1 = nearness(decay, stretch.to);
+    ends.l0 = ends.n0 * stretch.light_from, ends.l1 = ends.n1 * stretch.light_to;
+    ends.advance = advance(decay, stretch.from, ends.n0, stretch.to, ends.n1);
+    ends.f0 = 0.5f * ends.n0 * twice_sqrt(fma(x0, x0, least));
+    ends.f1 = 0.5f * ends.n1 * twice_sqrt(fma(x1, x1, least));
+    ends.f0f1 = ends.f0 * ends.f1;
+    ends.g = ends.n0 * ends.n1 * fma(x0, x1, least);
+    const floatv x_pole = fma(splat(-decay.beta), distance2->slope, distance2->offset);
+    ends.rate = decay.beta > 0.0f ? decay.beta * distance2->slope : distance2->slope;
+    ends.a = decay.beta > 0.0f ? fma(x_pole, x_pole, least) : ends.rate * ends.rate;
+    return ends;
+}
 
 // (artanh(m) / m - 1) / m^2 for m^2 up to 0.2.
 floatv artanh_series(const floatv m2) {
@@ -22,59 +74,27 @@ floatv artanh_series(const floatv m2) {
 #define HALF_LN_2 0.346573590f
 #endif
 
-INLINE floatv without_floor(const Quadratic *const distance2, const Decay decay, const floatv from, const floatv to) {
-    const floatv least = distance2->least;
-    const floatv x0 = fma(distance2->slope, from, distance2->offset);
-    const floatv x1 = fma(distance2->slope, to, distance2->offset);
-    const floatv n0 = nearness(decay, from), n1 = nearness(decay, to);
-    const floatv d = advance(decay, from, n0, to, n1);
-    const floatv f0 = 0.5f * n0 * twice_sqrt(fma(x0, x0, least));
-    const floatv f1 = 0.5f * n1 * twice_sqrt(fma(x1, x1, least));
-    const floatv ratio = d * inverse(f0 + f1);
+// The integral of the light times n / f over v.
+INLINE floatv inverse_over(const Ends *const ends, const floatv least) {
+    const floatv sum = ends->f0 + ends->f1;
+    const floatv per_sum = inverse(max(sum, 1e-30f));
+    const floatv ratio = ends->advance * per_sum;
+    const floatv m2 = ends->a * ratio * ratio;
 
-    // f^2 = a v^2 + 2 b v + ..; without decay both are the squared slope.
-    const floatv rate = decay.beta > 0.0f ? -decay.beta * distance2->slope : distance2->slope;
-    const floatv x_pole = decay.beta > 0.0f ? fma(splat(-decay.beta), distance2->slope, distance2->offset) : rate;
-    const floatv a = decay.beta > 0.0f ? fma(x_pole, x_pole, least) : rate * rate;
-    const floatv b = rate * x_pole;
-
-    // artanh(m) is half the logarithm of (F + sqrt(a) D)^2 / (F^2 - a D^2), where F^2 - a D^2 = 2 (f0 f1 + g) and (f0
-    // f1)^2 - g^2 = least (rate D)^2.
-    const floatv sum = f0 + f1, f0f1 = f0 * f1;
-    const floatv g = n0 * n1 * fma(x0, x1, least);
-    const intv is_between = g < 0.0f;
-    const floatv per_root = 0.5f * twice_inverse_sqrt_(max(a, 1e-30f));
-    const floatv whole = fma(a * per_root, d, sum);
-    const floatv turn = rate * d;
-    const floatv above = whole * whole * select(splat(1.0f), f0f1 - g, is_between);
-    const floatv below = 2.0f * select(f0f1 + g, least * turn * turn, is_between);
+    // artanh(m) is half the logarithm of (F + sqrt(a) D)^2 / (F^2 - a D^2), where F^2 - a D^2 = 2 (f0 f1 + g).
+    const intv is_between = ends->g < 0.0f;
+    const floatv per_root = 0.5f * twice_inverse_sqrt_(max(ends->a, 1e-30f));
+    const floatv whole = fma(ends->a * per_root, ends->advance, sum);
+    const floatv turn = ends->rate * ends->advance;
+    const floatv above = whole * whole * select(splat(1.0f), ends->f0f1 - ends->g, is_between);
+    const floatv below = 2.0f * select(ends->f0f1 + ends->g, least * turn * turn, is_between);
     const floatv artanh = HALF_LN_2 * binary_logarithm(above * inverse(max(below, 1e-36f)));
-    const floatv mean = 0.5f * (n0 + n1), per_a = per_root * per_root;
-    floatv integral = fma(ratio, fma(-b, per_a, mean), b * per_a * per_root * artanh);
-    const floatv m2 = a * ratio * ratio;
+    const floatv per_m = per_root * inverse(max(ratio, 1e-30f));
+    floatv excess = fma(artanh, per_m, splat(-1.0f)) * per_m * per_m;
     const intv is_small = m2 < 0.2f;
     if (any_lane(is_small))
-        integral = select(integral, ratio * fma(b * ratio * ratio, artanh_series(m2), mean), is_small);
-    return 2.0f * decay.strength * integral;
-}
-
-// Where the ray is closer to the core than the floor of all distances the field is constant; a ray in a million.
-floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay, const floatv from,
-                  const floatv to) {
-    const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
-    const floatv nearest = -distance2->offset * per_slope;
-    const floatv reach = 0.5f * twice_sqrt(max(floor2 - distance2->least, 1e-36f)) * per_slope;
-    const floatv begin = clamp(nearest - reach, from, to), end = clamp(nearest + reach, from, to);
-    const floatv inside = advance(decay, begin, nearness(decay, begin), end, nearness(decay, end));
-    const floatv flat = 0.5f * decay.strength * inside * twice_inverse_sqrt_(floor2);
-    return without_floor(distance2, decay, from, begin) + flat + without_floor(distance2, decay, end, to);
-}
-
-INLINE floatv closed_form(const Quadratic *const distance2, const floatv floor2, const Decay decay, const floatv from,
-                          const floatv to) {
-    const floatv integral = without_floor(distance2, decay, from, to);
-    const intv is_floored = distance2->least < floor2;
-    if (!any_lane(is_floored))
-        return integral;
-    return select(integral, with_floor(distance2, floor2, decay, from, to), is_floored);
+        excess = select(excess, artanh_series(m2), is_small);
+    const floatv mean = 0.5f * (ends->l0 + ends->l1);
+    const floatv bent = fma(m2, mean, -0.5f * (ends->l1 - ends->l0) * (ends->f1 - ends->f0) * per_sum);
+    return 2.0f * ratio * fma(bent, excess, mean);
 }

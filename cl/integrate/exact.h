@@ -14,7 +14,6 @@
 #define MOST_PANELS 24
 #define BEYOND_NODES 0.03f
 #define FIRST_ESTIMATE 0.25f
-#define LN_2 0.693147181f
 
 typedef struct {
     JOIN(FIELD, _near) near;
@@ -74,16 +73,19 @@ INLINE PanelSum JOIN(sum_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const 
 // The two panels on both sides of a cut at once: what one waits for, the other fills. Whether both are resolved.
 INLINE bool JOIN(first_two_, FIELD)(const JOIN(FIELD, _peaks) *const peaks, const Decay decay, const float threshold,
                                     const floatv cut, floatv *const integral) {
-    const intv has_first = !is_empty_panel(decay, splat(0.0f), cut),
-               has_second = !is_empty_panel(decay, cut, splat(1.0f));
+    const floatv end = peaks->ray->end;
+    const intv has_first = !is_empty_panel(decay, splat(0.0f), cut), has_second = !is_empty_panel(decay, cut, end);
     const floatv first_end = select(splat(1.0f), cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
+    const floatv second_end = select(splat(1.0f), end, has_second);
     JOIN(panel_of_, FIELD) first = JOIN(open_, FIELD)(peaks, decay, splat(0.0f), first_end);
-    JOIN(panel_of_, FIELD) second = JOIN(open_, FIELD)(peaks, decay, second_begin, splat(1.0f));
+    JOIN(panel_of_, FIELD) second = JOIN(open_, FIELD)(peaks, decay, second_begin, second_end);
     const PanelSum of_first = JOIN(sum_, FIELD)(peaks, decay, &first);
     const PanelSum of_second = JOIN(sum_, FIELD)(peaks, decay, &second);
     *integral = select(splat(0.0f), of_first.integral, has_first) + select(splat(0.0f), of_second.integral, has_second);
     const floatv allowed = threshold * *integral;
-    return !any_lane(max(of_first.unresolved2, of_second.unresolved2) > allowed * allowed);
+    const intv is_rough = ((of_first.unresolved2 > allowed * allowed) & has_first) |
+                          ((of_second.unresolved2 > allowed * allowed) & has_second);
+    return !any_lane(is_rough);
 }
 #endif
 

@@ -5,6 +5,7 @@
 #pragma once
 #include "../decay.h"
 #include "../elementary.h"
+#include "../field/profile.h"
 #include "../ray.h"
 
 // The advance of v below which a panel is empty.
@@ -37,17 +38,24 @@ intv is_empty_panel(const Decay decay, const floatv from, const floatv to) {
     return advance(decay, from, nearness(decay, from), to, nearness(decay, to)) < SHORTEST_PANEL;
 }
 
-// A ray that passes a core at a distance h below the floor f sees the field cut off at 1 / f. Where core and ray are
+// A ray that passes a core at a distance h below the floor f sees the field cut off at f. Where core and ray are
 // straight its integral is that of a field without floor past the core at the distance (c + f) e^(-c/f), c^2 = f^2 -
-// h^2: the square of it from the squares of h and f, by a polynomial within 0.1 %.
-INLINE floatv floored(const floatv least, const floatv floor2) {
+// h^2: the square of it from the squares of h and f, by a polynomial within 0.1 %. For the inverse square the integral
+// is 2 c / f^2
+// + 4 / h atan(h / (c + f)) instead of pi over the distance.
+INLINE floatv floored(const floatv least, const floatv floor2, const uint is_square) {
     const intv is_below = least < floor2;
     if (!any_lane(is_below))
         return least;
     const floatv t = min(least * inverse(floor2), 1.0f);
+    const floatv c = 0.5f * twice_sqrt(max(1.0f - t, 1e-30f)), per_sum = inverse(1.0f + c);
+    const floatv field = 2.0f * c + 4.0f * per_sum * arctangent_ratio((1.0f - c) * per_sum);
+    const floatv raised_square = M_PI_F * M_PI_F * inverse(field * field);
     const floatv raised =
-        fma(fma(fma(fma(splat(0.2287136f), t, splat(-0.2680140f)), t, splat(0.2481982f)), t, splat(0.2482847f)), t,
-            splat(0.5418592f));
+        is_square
+            ? raised_square
+            : fma(fma(fma(fma(splat(0.2287136f), t, splat(-0.2680140f)), t, splat(0.2481982f)), t, splat(0.2482847f)),
+                  t, splat(0.5418592f));
     return select(least, raised * floor2, is_below);
 }
 

@@ -1,5 +1,6 @@
 // Composite Simpson rule (Watanabe, Abe, Konno 2015, eq. 23) over the field named by FIELD: the sum of weight times
-// field over the nodes, which the host tabulates with the decay in their weights. Included once for every field.
+// field over the nodes. The host tabulates them over all of a ray with the decay in their weights; where depths end the
+// rays (-D DEPTH), for a part of one, without. Included once for every field.
 
 // The sum is taken in blocks: rounding then grows with the block, not with up to 65537 nodes.
 #ifndef SIMPSON_BLOCK
@@ -15,8 +16,15 @@ INLINE floatv JOIN(simpson_, FIELD)(const Ray *const ray, const Sources *const s
     for (uint begin = 0; begin < node_count; begin += SIMPSON_BLOCK) {
         const uint end = min(begin + SIMPSON_BLOCK, node_count);
         floatv block = splat(0.0f);
-        for (uint k = begin; k < end; ++k)
-            block = fma(splat(nodes[k].weight), JOIN(FIELD, _field)(&path, splat(nodes[k].s)), block);
+        for (uint k = begin; k < end; ++k) {
+#ifdef DEPTH
+            const floatv s = ray->end * nodes[k].s;
+            const floatv weight = ray->end * nodes[k].weight * decay_at(quadrature->decay, s);
+#else
+            const floatv s = splat(nodes[k].s), weight = splat(nodes[k].weight);
+#endif
+            block = fma(weight, JOIN(FIELD, _field)(&path, s), block);
+        }
         integral += block;
     }
     return integral;

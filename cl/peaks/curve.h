@@ -174,7 +174,7 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
 
     const intv is_thin = (lowest < path->floor2) & (path->floor2 < 1e-6f * size2);
     curve_near near = {*path, x, needs_polish(path, lowest), {true, true}};
-    near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2) - lowest, is_thin);
+    near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2, path->is_square) - lowest, is_thin);
     near.path.floor2 = select(path->floor2, 0.5f * path->floor2, is_thin);
     near.path.along.at = offset.x;
     near.path.across.at = offset.y;
@@ -220,6 +220,7 @@ INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
         nearest = polished(&near->path, &point, nearest);
         distance2 = min(distance2, curve_distance2(&near->path, &point, nearest));
     }
-    const floatv field = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
+    const floatv per_distance = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
+    const floatv field = profiled(per_distance, near->path.is_square);
     return near->path.spline_count ? field * curve_intensity(&near->path, nearest) : field;
 }

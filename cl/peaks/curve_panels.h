@@ -1,7 +1,7 @@
 // Where a ray's view of a curve changes: where it passes the reach of an end, and where the nearest point jumps. Panels
 // end there; those that belong to an end of the curve have a closed form.
 #pragma once
-#include "../integrate/closed_form.h"
+#include "../integrate/stretch.h"
 #include "curve.h"
 
 // Where a value that is linear along the ray is 0; 0 where it never is.
@@ -140,8 +140,7 @@ INLINE floatv curve_closed_form(const curve_peaks *const peaks, const Decay deca
     }
     const floatv length = 0.5f * twice_sqrt(peaks->span2);
     const Quadratic to_end = {length, -length * nearest, least + path->softening2};
-    // Lengths are doubled.
-    const floatv integral = 2.0f * closed_form(&to_end, path->floor2, decay, from, to);
+    const floatv integral = integral_over(evenly_lit(from, to), &to_end, path->floor2, decay, path->is_square);
     return path->spline_count ? integral * curve_intensity(path, x) : integral;
 }
 
@@ -161,20 +160,21 @@ INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, cons
 INLINE uint curve_panels(const curve_peaks *const peaks, const Decay decay, floatv *const from, floatv *const to,
                          floatv *const integral) {
     const curve_path *const path = &peaks->path;
-    const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, 1.0f);
-    const floatv b = clamp(end_cut(path, peaks->beyond_last, 0.5f), 0.0f, 1.0f);
-    const floatv c = clamp(ends_cut(peaks, peaks->beyond_first, peaks->beyond_last), 0.0f, 1.0f);
-    const floatv d = clamp(middle_cut(peaks), 0.0f, 1.0f);
+    const floatv end = peaks->ray->end;
+    const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, end);
+    const floatv b = clamp(end_cut(path, peaks->beyond_last, 0.5f), 0.0f, end);
+    const floatv c = clamp(ends_cut(peaks, peaks->beyond_first, peaks->beyond_last), 0.0f, end);
+    const floatv d = clamp(middle_cut(peaks), 0.0f, end);
     const floatv less_ab = min(a, b), more_ab = max(a, b), less_cd = min(c, d), more_cd = max(c, d);
     const floatv inner = max(less_ab, less_cd), outer = min(more_ab, more_cd);
-    to[0] = splat(1.0f);
+    to[0] = end;
     to[1] = from[0] = max(more_ab, more_cd);
     to[2] = from[1] = max(inner, outer);
     to[3] = from[2] = min(inner, outer);
     to[4] = from[3] = min(less_ab, less_cd);
     from[4] = splat(0.0f);
 
-    floatv first_from = splat(1.0f), first_to = splat(0.0f), last_from = splat(1.0f), last_to = splat(0.0f);
+    floatv first_from = end, first_to = splat(0.0f), last_from = end, last_to = splat(0.0f);
     for (uint k = 0; k < 5; ++k) {
         if (!any_lane(to[k] > from[k]))
             continue;

@@ -52,8 +52,8 @@ INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const 
 INLINE uint torus_panels(const torus_peaks *const peaks, const Decay decay, floatv *const from, floatv *const to,
                          floatv *const integral) {
     const Quadratic *const rho2 = &peaks->path.rho2;
-    to[0] = splat(1.0f);
-    to[1] = from[0] = clamp(nearest_along(rho2), 0.0f, 1.0f);
+    to[0] = peaks->ray->end;
+    to[1] = from[0] = clamp(nearest_along(rho2), 0.0f, to[0]);
     from[1] = splat(0.0f);
     *integral = splat(0.0f);
     return 2;
@@ -94,6 +94,7 @@ typedef struct {
     floatv height, height_slope;
     float major_radius;
     floatv softening2, floor2;
+    uint is_square;
 } torus_near;
 
 INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv base) {
@@ -110,6 +111,7 @@ INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv bas
     near.height_slope = path->height_slope;
     near.softening2 = path->softening2;
     near.floor2 = path->floor2;
+    near.is_square = path->is_square;
     return near;
 }
 
@@ -172,7 +174,7 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     const floatv ahead = -fma(offset.from_ring, offset.from_ring_slope, near.height * near.height_slope) * per_slope2;
     const floatv aside = fma(offset.from_ring, near.height_slope, -near.height * offset.from_ring_slope);
     const floatv least = fma(aside * per_slope2, aside, path->softening2);
-    const floatv lifted = floored(least, path->floor2);
+    const floatv lifted = floored(least, path->floor2, path->is_square);
     const intv is_thin = is_next & (path->floor2 < 1e-4f * radius2);
     near.softening2 += select(splat(0.0f), lifted - least, is_thin);
     near.floor2 = select(near.floor2, 0.5f * near.floor2, is_thin);
@@ -196,5 +198,5 @@ INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv aside2 = fma(height, height, near->softening2);
     const floatv sum2 = sum * sum;
     const floatv scaled2 = max(fma(excess, excess, aside2 * sum2), near->floor2 * sum2);
-    return sum * coarse_twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f));
+    return profiled(sum * coarse_twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f)), near->is_square);
 }

@@ -49,12 +49,12 @@ fn name_unknown_kinds(rays: &[KnownRay]) {
 
 fn table(rows: &[Row]) -> String {
     let mut text = format!(
-        "{:>5} {:<15} {:<8} {:>14} {:>14} {:>9} {:>8}  device\n",
+        "{:>5} {:<21} {:<8} {:>14} {:>14} {:>9} {:>8}  device\n",
         "index", "kind", "method", "expected", "value", "error", "limit"
     );
     for row in rows {
         text += &format!(
-            "{:>5} {:<15} {:<8} {:>14.8e} {:>14.8e} {:>9.1e} {:>8.0e}  {}{}\n",
+            "{:>5} {:<21} {:<8} {:>14.8e} {:>14.8e} {:>9.1e} {:>8.0e}  {}{}\n",
             row.index,
             row.kind,
             name(row.method),

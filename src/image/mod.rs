@@ -1,10 +1,12 @@
-//! Images: linear radiance, the 8-bit picture made of it, files, and comparison.
+//! Images: depth, linear radiance, the 8-bit picture made of it, files, and comparison.
 
 mod compare;
+mod depth;
 mod file;
 mod tone_map;
 
 pub use compare::{Difference, compare};
+pub use depth::{DepthAlong, DepthImage};
 pub use file::{Output, OutputFormat};
 
 use crate::error::{Error, Result};

@@ -35,6 +35,8 @@ impl Job {
         let task = Task {
             method: Variant::of(scene.integration.method, rule),
             kinds: source_counts(&sources).map(|count| count > 0),
+            has_squares: sources.have_squares(),
+            has_depth: scene.depth.is_some() && !is_listed,
             rays: match scene.sampling() {
                 _ if is_listed => Rays::Listed,
                 Sampling::Tiles if scene.source_count() > 0 => Rays::Tiles,

@@ -16,7 +16,11 @@ use crate::scene::Method;
 pub(super) struct Task {
     pub method: Variant,
     /// Which kinds of source the scene has, in the order of [`KIND_OPTIONS`].
-    pub kinds: [bool; 4],
+    pub kinds: [bool; 5],
+    /// Whether any source falls off with the squared distance.
+    pub has_squares: bool,
+    /// Whether depths end the rays.
+    pub has_depth: bool,
     pub rays: Rays,
 }
 
@@ -32,7 +36,13 @@ pub(super) enum Rays {
 }
 
 /// What the kernels' compiler is told of the kinds of source that there are.
-const KIND_OPTIONS: [&str; 4] = [" -D SPHERES", " -D CYLINDERS", " -D TORI", " -D CURVES"];
+const KIND_OPTIONS: [&str; 5] = [
+    " -D SPHERES",
+    " -D CYLINDERS",
+    " -D BEAMS",
+    " -D TORI",
+    " -D CURVES",
+];
 
 /// A way to integrate that has kernels of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -80,7 +90,10 @@ impl Kernels {
             Variant::Simpson => String::new(),
             Variant::Exact { .. } => rule.definitions(),
         };
-        for (option, is_there) in KIND_OPTIONS.into_iter().zip(task.kinds) {
+        let options_of = KIND_OPTIONS.into_iter().zip(task.kinds);
+        let squares = (" -D INVERSE_SQUARES", task.has_squares);
+        let depth = (" -D DEPTH", task.has_depth);
+        for (option, is_there) in options_of.chain([squares, depth]) {
             if is_there {
                 definitions += option;
             }

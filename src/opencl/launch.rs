@@ -18,14 +18,14 @@ const MOST_GROWTH: f64 = 16.0;
 #[derive(Debug)]
 pub(super) struct Pace {
     evaluations: f64,
-    kinds: [bool; 4],
+    kinds: [bool; 5],
 }
 
 impl Pace {
     pub(super) fn new() -> Self {
         Self {
             evaluations: FIRST_EVALUATIONS,
-            kinds: [false; 4],
+            kinds: [false; 5],
         }
     }
 
@@ -115,11 +115,12 @@ pub(super) struct Work {
     pub most_sources: u64,
 }
 
-/// Numbers of spheres, cylinders, tori and curves.
-pub(super) fn source_counts(sources: &Sources) -> [u64; 4] {
+/// Numbers of spheres, cylinders, beams, tori and curves.
+pub(super) fn source_counts(sources: &Sources) -> [u64; 5] {
     [
         sources.spheres.len() as u64,
         sources.cylinders.len() as u64,
+        sources.beams.len() as u64,
         sources.tori.len() as u64,
         sources.curves.len() as u64,
     ]
@@ -130,7 +131,7 @@ pub(super) fn source_count(sources: &Sources) -> u64 {
 }
 
 /// Sources of each kind in a part, as ranges of the lists.
-fn ranges(part: &Part, sources: &Sources) -> [Range<u32>; 4] {
+fn ranges(part: &Part, sources: &Sources) -> [Range<u32>; 5] {
     let mut begin_of_kind = 0;
     source_counts(sources).map(|count| {
         let clip =
@@ -149,7 +150,7 @@ pub(super) fn word_count(part: &Part, sources: &Sources) -> u32 {
 
 /// The launch struct of a part; `slot` is where its first pixel goes in the output buffer.
 pub(super) fn launch(part: &Part, slot: u32, sources: &Sources, node_count: u32) -> layout::Launch {
-    let [spheres, cylinders, tori, curves] = ranges(part, sources);
+    let [spheres, cylinders, beams, tori, curves] = ranges(part, sources);
     layout::Launch {
         first: part.pixels.start,
         count: part.pixels.end - part.pixels.start,
@@ -164,9 +165,9 @@ pub(super) fn launch(part: &Part, slot: u32, sources: &Sources, node_count: u32)
         torus_end: tori.end,
         curve_begin: curves.start,
         curve_end: curves.end,
-        padding_0: 0,
-        padding_1: 0,
-        padding_2: 0,
+        beam_begin: beams.start,
+        beam_end: beams.end,
+        padding: 0,
     }
 }
 

@@ -10,6 +10,7 @@ pub(super) struct Lists {
     pub nodes: Uploaded<layout::Node>,
     pub spheres: Uploaded<layout::Sphere>,
     pub cylinders: Uploaded<layout::Cylinder>,
+    pub beams: Uploaded<layout::Beam>,
     pub tori: Uploaded<layout::Torus>,
     pub curves: Uploaded<layout::Curve>,
     pub spline_pieces: Uploaded<layout::SplinePiece>,
@@ -22,6 +23,7 @@ impl Lists {
             nodes: Uploaded::new("the list of quadrature nodes"),
             spheres: Uploaded::new("the list of spheres"),
             cylinders: Uploaded::new("the list of cylinders"),
+            beams: Uploaded::new("the list of beams"),
             tori: Uploaded::new("the list of tori"),
             curves: Uploaded::new("the list of curves"),
             spline_pieces: Uploaded::new("the list of spline pieces"),
@@ -40,6 +42,7 @@ impl Lists {
         self.nodes.upload(compute, nodes)?;
         self.spheres.upload(compute, &sources.spheres)?;
         self.cylinders.upload(compute, &sources.cylinders)?;
+        self.beams.upload(compute, &sources.beams)?;
         self.tori.upload(compute, &sources.tori)?;
         self.curves.upload(compute, &sources.curves)?;
         let pieces = &sources.spline_pieces;
@@ -55,6 +58,7 @@ impl Lists {
         self.nodes.settle(compute)?;
         self.spheres.settle(compute)?;
         self.cylinders.settle(compute)?;
+        self.beams.settle(compute)?;
         self.tori.settle(compute)?;
         self.curves.settle(compute)?;
         self.spline_pieces.settle(compute)?;

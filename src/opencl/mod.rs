@@ -5,6 +5,7 @@ mod affinity;
 mod buffer;
 mod compute;
 mod counts;
+mod depths;
 mod discover;
 mod failure;
 mod job;

@@ -11,6 +11,7 @@ use opencl3::kernel::Kernel;
 use opencl3::program::Program as ClProgram;
 
 use super::counts::{self, Counts};
+use super::depths::Depths;
 use super::failure::{code_name, failed};
 use super::{Compute, DeviceBuffer, Uploaded, source};
 use crate::error::{Error, Result};
@@ -141,6 +142,13 @@ impl<T: Pod> Argument for DeviceBuffer<T> {
 impl<T: Pod + PartialEq> Argument for Uploaded<T> {
     fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError> {
         // SAFETY: as for DeviceBuffer; before the first upload the handle is null, which a kernel may get but not read.
+        unsafe { kernel.set_arg(index, &self.handle()) }
+    }
+}
+
+impl Argument for Depths {
+    fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError> {
+        // SAFETY: as for Uploaded.
         unsafe { kernel.set_arg(index, &self.handle()) }
     }
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use opencl3::event::Event;
 
 use super::counts::{self, Counts};
+use super::depths::Depths;
 use super::job::Job;
 use super::kernels::{Kernels, Rays, Variant};
 use super::launch::{Pace, Part, launch};
@@ -33,6 +34,7 @@ pub struct OpenClRenderer {
     lists: Lists,
     open_tiles: OpenTiles,
     counts: Counts,
+    depths: Depths,
     pub(super) output: Option<DeviceBuffer<Pixel>>,
     pace: Pace,
     cost: FrameCost,
@@ -64,6 +66,7 @@ impl OpenClRenderer {
             lists: Lists::new(),
             open_tiles: OpenTiles::default(),
             counts: Counts::default(),
+            depths: Depths::default(),
             output: None,
             pace: Pace::new(),
             cost: FrameCost::default(),
@@ -100,6 +103,7 @@ impl OpenClRenderer {
         let reach = plane.first_pixel.length() + plane.ray_length;
         let sources = Sources::new(scene, plane.eye, reach, plane.ray_length);
         let view = pack::view(&plane, scene);
+        self.depths.upload(&self.compute, scene.depth.as_ref())?;
         self.upload(scene, view, sources, None)
     }
 
@@ -129,7 +133,11 @@ impl OpenClRenderer {
         self.kernels
             .prepare(&self.compute, &self.options, job.task, &rule)?;
         let nodes = match job.task.method {
-            Variant::Simpson => pack::nodes(scene.integration.divisions, scene.decay),
+            Variant::Simpson => {
+                // Of a ray that ends early, only the kernel knows where its nodes are.
+                let decay = scene.decay.filter(|_| !job.task.has_depth);
+                pack::nodes(scene.integration.divisions, decay)
+            }
             Variant::Exact { .. } => Vec::new(),
         };
         self.lists
@@ -242,16 +250,18 @@ impl OpenClRenderer {
         }
         let launch = launch(part, slot, &job.sources, job.work.node_count);
         let lists = &self.lists;
-        let common: [&dyn Argument; 10] = [
+        let common: [&dyn Argument; 12] = [
             &job.view,
             &launch,
             &lists.nodes,
             &lists.spheres,
             &lists.cylinders,
+            &lists.beams,
             &lists.tori,
             &lists.curves,
             &lists.spline_pieces,
             &self.counts,
+            &self.depths,
             self.output()?,
         ];
         let kernel = self.kernels.get(job.task)?;

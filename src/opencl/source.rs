@@ -18,9 +18,11 @@ embed!(
     "decay.h",
     "ray.h",
     "sources.h",
+    "field/profile.h",
     "field/quadratic.h",
     "field/sphere.h",
     "field/cylinder.h",
+    "field/beam.h",
     "field/torus.h",
     "field/cubic.h",
     "field/spline.h",
@@ -28,7 +30,10 @@ embed!(
     "integrate/quadrature.h",
     "integrate/simpson.h",
     "integrate/closed_form.h",
+    "integrate/closed_form_square.h",
+    "integrate/stretch.h",
     "integrate/closed.h",
+    "integrate/beam.h",
     "integrate/panel.h",
     "integrate/exact.h",
     "peaks/torus.h",
@@ -38,6 +43,7 @@ embed!(
     "clearance.h",
     "store.h",
     "tile.h",
+    "hiding.h",
     "smoothness.h",
     "settle.h",
     "render.cl",
@@ -120,7 +126,7 @@ mod tests {
         assert!(!text.contains("#error \"no file"), "a file is missing");
         assert_eq!(text.matches("floatv, intv and uintv hold").count(), 1);
         assert_eq!(text.matches("composite Simpson").count(), 0);
-        assert_eq!(text.matches("floatv JOIN(simpson_, FIELD)").count(), 4);
+        assert_eq!(text.matches("floatv JOIN(simpson_, FIELD)").count(), 5);
         // The line after an include is announced with its own number.
         let render = FILES
             .iter()

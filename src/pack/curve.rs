@@ -65,7 +65,7 @@ pub(super) fn curve(
         is_straight: u32::from(is_straight),
         spline_begin: spline.start,
         spline_count: spline.end - spline.start,
-        padding: 0,
+        is_square: super::is_square(curve.profile),
     }
 }
 

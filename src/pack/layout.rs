@@ -36,7 +36,7 @@ macro_rules! device_structs {
 
 device_structs! {
     /// The pixel grid on the projection plane.
-    View [128] {
+    View [144] {
         first_pixel: [f32; 4] = 0,
         column_step: [f32; 4] = 16,
         row_step: [f32; 4] = 32,
@@ -51,6 +51,10 @@ device_structs! {
         torus_threshold: f32 = 116,
         curve_threshold: f32 = 120,
         width: u32 = 124,
+        height: u32 = 128,
+        near_plane: f32 = 132,
+        hides_all: f32 = 136,
+        hides_nothing: f32 = 140,
     }
     /// One launch.
     Launch [64] {
@@ -67,9 +71,9 @@ device_structs! {
         torus_end: u32 = 40,
         curve_begin: u32 = 44,
         curve_end: u32 = 48,
-        padding_0: u32 = 52,
-        padding_1: u32 = 56,
-        padding_2: u32 = 60,
+        beam_begin: u32 = 52,
+        beam_end: u32 = 56,
+        padding: u32 = 60,
     }
     /// One pass over tiles of one size.
     TilePass [56] {
@@ -101,18 +105,44 @@ device_structs! {
         weight: f32 = 4,
     }
     /// A point of light.
-    Sphere [48] {
+    Sphere [64] {
         center: [f32; 4] = 0,
         center_rest: [f32; 4] = 16,
         emission: [f32; 4] = 32,
+        is_square: u32 = 48,
+        padding_0: u32 = 52,
+        padding_1: u32 = 56,
+        padding_2: u32 = 60,
     }
     /// A line of light.
-    Cylinder [80] {
+    Cylinder [96] {
         point: [f32; 4] = 0,
         point_rest: [f32; 4] = 16,
         direction: [f32; 4] = 32,
         direction_rest: [f32; 4] = 48,
         emission: [f32; 4] = 64,
+        is_square: u32 = 80,
+        padding_0: u32 = 84,
+        padding_1: u32 = 88,
+        padding_2: u32 = 92,
+    }
+    /// A half-line of light.
+    Beam [144] {
+        tip: [f32; 4] = 0,
+        tip_rest: [f32; 4] = 16,
+        point: [f32; 4] = 32,
+        point_rest: [f32; 4] = 48,
+        direction: [f32; 4] = 64,
+        direction_rest: [f32; 4] = 80,
+        emission: [f32; 4] = 96,
+        line: f32 = 112,
+        cap: f32 = 116,
+        sphere: f32 = 120,
+        per_taper: f32 = 124,
+        is_square: u32 = 128,
+        padding_0: u32 = 132,
+        padding_1: u32 = 136,
+        padding_2: u32 = 140,
     }
     /// A ring of light.
     Torus [96] {
@@ -123,8 +153,8 @@ device_structs! {
         emission: [f32; 4] = 64,
         major_radius: f32 = 80,
         major_radius_rest: f32 = 84,
-        padding_0: f32 = 88,
-        padding_1: f32 = 92,
+        is_square: u32 = 88,
+        padding: u32 = 92,
     }
     /// A quadratic curve of light.
     Curve [192] {
@@ -145,7 +175,7 @@ device_structs! {
         is_straight: u32 = 176,
         spline_begin: u32 = 180,
         spline_count: u32 = 184,
-        padding: u32 = 188,
+        is_square: u32 = 188,
     }
     /// One piece of a quadratic B-spline.
     SplinePiece [16] {

@@ -4,13 +4,15 @@ mod curve;
 pub mod layout;
 mod rule;
 
+use bytemuck::Zeroable;
 use glam::DVec3;
 
 pub use rule::Rule;
 
+use crate::image::DepthAlong;
 use crate::ray::{Ray, ViewPlane};
 use crate::reference::simpson_nodes;
-use crate::scene::{Cylinder, Decay, Measure, Scene, Sphere, Torus};
+use crate::scene::{Beam, Cylinder, Decay, Measure, Profile, Scene, Sphere, Torus};
 
 /// A scene's sources as the kernels read them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -19,6 +21,8 @@ pub struct Sources {
     pub spheres: Vec<layout::Sphere>,
     /// Lines of light.
     pub cylinders: Vec<layout::Cylinder>,
+    /// Half-lines of light.
+    pub beams: Vec<layout::Beam>,
     /// Rings of light.
     pub tori: Vec<layout::Torus>,
     /// Curves of light.
@@ -65,6 +69,7 @@ impl Sources {
                 .iter()
                 .map(|c| cylinder(&frame, c))
                 .collect(),
+            beams: scene.beams.iter().map(|b| beam(&frame, b)).collect(),
             tori: scene.tori.iter().map(|t| torus(&frame, t)).collect(),
             curves: Vec::new(),
             spline_pieces: Vec::new(),
@@ -89,6 +94,18 @@ impl Sources {
     }
 }
 
+impl Sources {
+    /// Whether any source falls off with the squared distance.
+    pub fn have_squares(&self) -> bool {
+        let open = (self.spheres.iter().map(|s| s.is_square))
+            .chain(self.cylinders.iter().map(|c| c.is_square))
+            .chain(self.beams.iter().map(|b| b.is_square));
+        let closed = (self.tori.iter().map(|t| t.is_square))
+            .chain(self.curves.iter().map(|c| c.is_square));
+        open.chain(closed).any(|is_square| is_square == 1)
+    }
+}
+
 /// The view plane, and what is integrated along its rays, as the kernels read it.
 pub fn view(plane: &ViewPlane, scene: &Scene) -> layout::View {
     let [first_pixel, column_step, row_step] =
@@ -102,7 +119,28 @@ pub fn view(plane: &ViewPlane, scene: &Scene) -> layout::View {
         row_step_rest: row_step.rest,
         ray_length: plane.ray_length as f32,
         width: scene.image.width,
-        ..view_of_rays(scene)
+        height: scene.image.height,
+        ..depth_limits(plane, scene)
+    }
+}
+
+/// What depths are lengths of, and which hide all of any ray, or nothing; a little less and more than float32 may say.
+fn depth_limits(plane: &ViewPlane, scene: &Scene) -> layout::View {
+    const MARGIN: f64 = 1e-5;
+    let view = view_of_rays(scene);
+    let Some(depth) = &scene.depth else {
+        return view;
+    };
+    // The corner pixel's is the longest way from the eye to the plane.
+    let (near_plane, farthest) = match depth.along() {
+        DepthAlong::Ray => (0.0, plane.first_pixel.length()),
+        DepthAlong::Axis => (plane.near, plane.near),
+    };
+    layout::View {
+        near_plane: near_plane as f32,
+        hides_all: ((1.0 - MARGIN) * plane.near) as f32,
+        hides_nothing: ((1.0 + MARGIN) * (farthest + plane.ray_length)) as f32,
+        ..view
     }
 }
 
@@ -114,7 +152,7 @@ pub fn view_of_rays(scene: &Scene) -> layout::View {
         decay_strength: scene.decay.map_or(1.0, |decay| decay.alpha / decay.beta) as f32,
         decay_beta: scene.decay.map_or(0.0, |decay| decay.beta) as f32,
         decay_per_beta: scene.decay.map_or(0.0, |decay| 1.0 / decay.beta) as f32,
-        ..bytemuck::Zeroable::zeroed()
+        ..Zeroable::zeroed()
     }
 }
 
@@ -145,21 +183,54 @@ fn sphere(frame: &Frame, sphere: &Sphere) -> layout::Sphere {
         center: center.value,
         center_rest: center.rest,
         emission: frame.emission(sphere.coefficient, sphere.color),
+        is_square: is_square(sphere.profile),
+        ..Zeroable::zeroed()
     }
 }
 
 fn cylinder(frame: &Frame, cylinder: &Cylinder) -> layout::Cylinder {
-    let direction = cylinder.direction.normalize();
-    let to_eye = frame.origin - cylinder.point;
-    let nearest_to_eye = cylinder.point + direction * to_eye.dot(direction);
-    let (point, direction) = (frame.position(nearest_to_eye), fine(direction));
+    let (point, direction) = line(frame, cylinder.point, cylinder.direction);
     layout::Cylinder {
         point: point.value,
         point_rest: point.rest,
         direction: direction.value,
         direction_rest: direction.rest,
         emission: frame.emission(cylinder.coefficient, cylinder.color),
+        is_square: is_square(cylinder.profile),
+        ..Zeroable::zeroed()
     }
+}
+
+fn beam(frame: &Frame, beam: &Beam) -> layout::Beam {
+    let tip = frame.position(beam.tip);
+    let (point, direction) = line(frame, beam.tip, beam.direction);
+    layout::Beam {
+        tip: tip.value,
+        tip_rest: tip.rest,
+        point: point.value,
+        point_rest: point.rest,
+        direction: direction.value,
+        direction_rest: direction.rest,
+        emission: frame.emission(1.0, beam.color),
+        line: beam.coefficient as f32,
+        cap: beam.cap() as f32,
+        sphere: beam.sphere_coefficient as f32,
+        per_taper: beam.taper_length.map_or(0.0, |length| 1.0 / length) as f32,
+        is_square: is_square(beam.profile),
+        ..Zeroable::zeroed()
+    }
+}
+
+/// A line's point nearest to the eye, and its direction.
+fn line(frame: &Frame, point: DVec3, direction: DVec3) -> (Fine, Fine) {
+    let direction = direction.normalize();
+    let to_eye = frame.origin - point;
+    let nearest_to_eye = point + direction * to_eye.dot(direction);
+    (frame.position(nearest_to_eye), fine(direction))
+}
+
+fn is_square(profile: Profile) -> u32 {
+    u32::from(profile == Profile::InverseSquare)
 }
 
 fn torus(frame: &Frame, torus: &Torus) -> layout::Torus {
@@ -173,8 +244,8 @@ fn torus(frame: &Frame, torus: &Torus) -> layout::Torus {
         emission: frame.emission(torus.coefficient, torus.color),
         major_radius,
         major_radius_rest: (torus.major_radius - f64::from(major_radius)) as f32,
-        padding_0: 0.0,
-        padding_1: 0.0,
+        is_square: is_square(torus.profile),
+        padding: 0,
     }
 }
 

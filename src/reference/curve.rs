@@ -224,12 +224,7 @@ mod tests {
     use super::*;
 
     fn curve(points: [[f64; 3]; 3]) -> CurveField {
-        CurveField::new(&Curve {
-            control_points: points.map(DVec3::from),
-            coefficient: 1.0,
-            color: DVec3::ONE,
-            intensity: None,
-        })
+        CurveField::new(&Curve::new(points.map(DVec3::from)))
     }
 
     #[test]

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::curve::CurveField;
 use crate::ray::Ray;
-use crate::scene::{Cylinder, Sphere, Torus};
+use crate::scene::{Beam, Cylinder, Sphere, Torus};
 
 /// One sample of a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,27 +15,47 @@ pub struct Sample {
     pub intensity: f64,
 }
 
-/// A source's field.
+/// What a field falls off from.
 #[derive(Debug, Clone)]
 pub enum Field {
-    /// 1/r around a point.
+    /// A point.
     Sphere(Sphere),
-    /// 1/r around an infinite line; the direction is a unit vector.
+    /// An infinite line; the direction is a unit vector.
     Cylinder(Cylinder),
-    /// 1/r around a circle; the axis is a unit vector.
+    /// The line of a beam: dark behind the tip, or fading there; the direction is a unit vector.
+    BeamLine(Beam),
+    /// The tip of a beam, dark ahead of it; the direction is a unit vector.
+    BeamCap(Beam),
+    /// A circle; the axis is a unit vector.
     Torus(Torus),
-    /// 1/r around a quadratic curve, times a local intensity.
+    /// A quadratic curve with its local intensity.
     Curve(CurveField),
 }
 
 impl Field {
     /// The field at a point, without softening.
     pub fn sample(&self, point: DVec3) -> Sample {
+        let mut intensity = 1.0;
         let distance2 = match self {
             Self::Sphere(sphere) => point.distance_squared(sphere.center),
             Self::Cylinder(cylinder) => {
                 let from_point = point - cylinder.point;
                 from_point.cross(cylinder.direction).length_squared()
+            }
+            Self::BeamLine(beam) => {
+                let from_tip = point - beam.tip;
+                let ahead = from_tip.dot(beam.direction);
+                intensity = match beam.taper_length {
+                    _ if ahead >= 0.0 => 1.0,
+                    Some(length) => (1.0 + ahead / length).max(0.0),
+                    None => 0.0,
+                };
+                from_tip.cross(beam.direction).length_squared()
+            }
+            Self::BeamCap(beam) => {
+                let from_tip = point - beam.tip;
+                intensity = f64::from(from_tip.dot(beam.direction) < 0.0);
+                from_tip.length_squared()
             }
             Self::Torus(torus) => {
                 let from_center = point - torus.center;
@@ -47,7 +67,7 @@ impl Field {
         };
         Sample {
             distance2,
-            intensity: 1.0,
+            intensity,
         }
     }
 
@@ -56,14 +76,34 @@ impl Field {
         match self {
             Self::Sphere(sphere) => breaks.push(ray.nearest_to(sphere.center)),
             Self::Cylinder(cylinder) => {
-                let across = |v: DVec3| v.cross(cylinder.direction);
-                let span = across(ray.span);
-                breaks.push(across(cylinder.point - ray.origin).dot(span) / span.length_squared());
+                breaks.push(nearest_to_line(ray, cylinder.point, cylinder.direction));
+            }
+            Self::BeamLine(beam) => {
+                breaks.push(nearest_to_line(ray, beam.tip, beam.direction));
+                for behind in [Some(0.0), beam.taper_length].into_iter().flatten() {
+                    breaks.push(crossing(ray, beam.tip - beam.direction * behind, beam.direction));
+                }
+            }
+            Self::BeamCap(beam) => {
+                breaks.push(ray.nearest_to(beam.tip));
+                breaks.push(crossing(ray, beam.tip, beam.direction));
             }
             Self::Torus(torus) => torus_breaks(torus, ray, breaks),
             Self::Curve(curve) => curve.breaks(ray, breaks),
         }
     }
+}
+
+/// The parameter s at which a ray is nearest to a line; not a number if they are parallel.
+fn nearest_to_line(ray: &Ray, point: DVec3, direction: DVec3) -> f64 {
+    let across = |v: DVec3| v.cross(direction);
+    let span = across(ray.span);
+    across(point - ray.origin).dot(span) / span.length_squared()
+}
+
+/// The parameter s at which a ray crosses a plane (2010, eq. 10); not finite if they are parallel.
+fn crossing(ray: &Ray, point: DVec3, normal: DVec3) -> f64 {
+    (point - ray.origin).dot(normal) / ray.span.dot(normal)
 }
 
 /// Least distances to the ring, and the kink beside its axis. Every least distance lies where the ray passes alongside

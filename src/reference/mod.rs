@@ -19,7 +19,7 @@ pub use quadrature::{Estimate, integrate};
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
 use crate::ray::{Ray, ViewPlane};
-use crate::scene::{Decay, Measure, Method, Scene};
+use crate::scene::{Decay, Measure, Method, Profile, Scene, Sphere};
 
 /// Relative error that [`exact`] aims at.
 pub const RELATIVE_ERROR: f64 = 1e-10;
@@ -27,40 +27,60 @@ pub const RELATIVE_ERROR: f64 = 1e-10;
 /// On every device the squared distance is never taken below `(CORE_FLOOR |E - S|)^2`, so that every pixel is finite.
 pub const CORE_FLOOR: f64 = 1e-6;
 
-/// One source of light: `emission` times the integral of its field.
+/// A part of a source: `emission` times the integral of its field.
 #[derive(Debug, Clone)]
 pub struct Source {
-    /// The scalar field.
+    /// What the field falls off from.
     pub field: Field,
+    /// How it falls off.
+    pub profile: Profile,
     /// Colour times coefficient, linear RGB.
     pub emission: DVec3,
 }
 
-/// Every source of a scene, spheres first, then cylinders, tori, curves.
+/// Every source of a scene, a beam as up to three: line, cap and sphere.
 pub fn sources(scene: &Scene) -> Vec<Source> {
-    let source = |field, coefficient: f64, color: DVec3| Source {
+    let source = |field, profile, coefficient: f64, color: DVec3| Source {
         field,
+        profile,
         emission: color * coefficient,
     };
     let spheres = scene
         .spheres
         .iter()
-        .map(|s| source(Field::Sphere(s.clone()), s.coefficient, s.color));
+        .map(|s| source(Field::Sphere(s.clone()), s.profile, s.coefficient, s.color));
     let cylinders = scene.cylinders.iter().map(|c| {
         let mut unit = c.clone();
         unit.direction = c.direction.normalize();
-        source(Field::Cylinder(unit), c.coefficient, c.color)
+        source(Field::Cylinder(unit), c.profile, c.coefficient, c.color)
+    });
+    let beams = scene.beams.iter().flat_map(|b| {
+        let mut unit = b.clone();
+        unit.direction = b.direction.normalize();
+        let sphere = Sphere {
+            center: b.tip,
+            ..Sphere::default()
+        };
+        let parts = [
+            (Field::BeamLine(unit.clone()), b.coefficient),
+            (Field::BeamCap(unit), b.cap()),
+            (Field::Sphere(sphere), b.sphere_coefficient),
+        ];
+        let lit = parts.into_iter().filter(|(_, coefficient)| *coefficient != 0.0);
+        lit.map(|(field, coefficient)| source(field, b.profile, coefficient, b.color))
+            .collect::<Vec<_>>()
     });
     let tori = scene.tori.iter().map(|t| {
         let mut unit = t.clone();
         unit.axis = t.axis.normalize();
-        source(Field::Torus(unit), t.coefficient, t.color)
+        source(Field::Torus(unit), t.profile, t.coefficient, t.color)
     });
-    let curves = scene
-        .curves
-        .iter()
-        .map(|c| source(Field::Curve(CurveField::new(c)), c.coefficient, c.color));
-    spheres.chain(cylinders).chain(tori).chain(curves).collect()
+    let curves = scene.curves.iter().map(|c| {
+        let field = Field::Curve(CurveField::new(c));
+        source(field, c.profile, c.coefficient, c.color)
+    });
+    let open = spheres.chain(cylinders).chain(beams);
+    open.chain(tori).chain(curves).collect()
 }
 
 /// What is integrated along a ray besides the field.
@@ -73,27 +93,43 @@ pub struct Integrand {
 }
 
 impl Integrand {
-    /// `psi(L(s)) zeta(s)` for one field of coefficient 1.
-    pub fn at(&self, field: &Field, ray: &Ray, s: f64) -> f64 {
+    /// `psi(L(s)) zeta(s)` for one source of emission 1.
+    pub fn at(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
         let floor = CORE_FLOOR * CORE_FLOOR * ray.span.length_squared();
-        let sample = field.sample(ray.at(s));
+        let sample = source.field.sample(ray.at(s));
         let distance2 = (sample.distance2 + self.softening * self.softening).max(floor);
+        let distance = match source.profile {
+            Profile::Inverse => distance2.sqrt(),
+            Profile::InverseSquare => distance2,
+        };
         let zeta = self.decay.map_or(1.0, |decay| decay.at(s));
-        zeta * sample.intensity / distance2.sqrt()
+        zeta * sample.intensity / distance
     }
 }
 
-/// The integral over s in `[0,1]` of a field times the decay, to [`RELATIVE_ERROR`].
-pub fn exact(field: &Field, ray: &Ray, integrand: &Integrand) -> f64 {
+/// The integral over s in `[0,end]` of a source's field times the decay, to [`RELATIVE_ERROR`].
+pub fn exact(source: &Source, ray: &Ray, integrand: &Integrand, end: f64) -> f64 {
     let mut breaks = Vec::with_capacity(16);
-    field.breaks(ray, &mut breaks);
-    integrate(|s| integrand.at(field, ray, s), &mut breaks, RELATIVE_ERROR).value
+    source.field.breaks(ray, &mut breaks);
+    integrate(
+        |s| integrand.at(source, ray, s),
+        &mut breaks,
+        end,
+        RELATIVE_ERROR,
+    )
+    .value
 }
 
 /// The same integral by the composite Simpson rule with an even number of equal divisions (2015, eq. 23).
-pub fn simpson(field: &Field, ray: &Ray, integrand: &Integrand, divisions: u32) -> f64 {
+pub fn simpson(
+    source: &Source,
+    ray: &Ray,
+    integrand: &Integrand,
+    end: f64,
+    divisions: u32,
+) -> f64 {
     simpson_nodes(divisions)
-        .map(|(s, weight)| weight * integrand.at(field, ray, s))
+        .map(|(s, weight)| end * weight * integrand.at(source, ray, end * s))
         .sum()
 }
 
@@ -155,9 +191,11 @@ pub(crate) fn render_into(
             .for_each(|(i, pixel)| {
                 let index = band * band_len + i;
                 let (row, column) = (index / width, index % width);
-                let light = tracer
-                    .radiance(&plane.ray(column as u32, row as u32))
-                    .as_vec3();
+                let ray = plane.ray(column as u32, row as u32);
+                let end = scene.depth.as_ref().map_or(1.0, |depth| {
+                    plane.end(&ray, depth.as_slice()[index], depth.along())
+                });
+                let light = tracer.radiance(&ray, end).as_vec3();
                 pixel.copy_from_slice(&[light.x, light.y, light.z, 1.0]);
             });
         if progress((band + 1) as f32 / band_count as f32).is_break() {
@@ -194,12 +232,12 @@ impl Tracer {
         }
     }
 
-    /// Linear RGB along a ray.
-    pub(crate) fn radiance(&self, ray: &Ray) -> DVec3 {
+    /// Linear RGB along a ray, over s in `[0,end]`.
+    pub(crate) fn radiance(&self, ray: &Ray, end: f64) -> DVec3 {
         let light = |source: &Source| {
             let integral = match self.method {
-                Method::Exact => exact(&source.field, ray, &self.integrand),
-                Method::Simpson => simpson(&source.field, ray, &self.integrand, self.divisions),
+                Method::Exact => exact(source, ray, &self.integrand, end),
+                Method::Simpson => simpson(source, ray, &self.integrand, end, self.divisions),
             };
             source.emission * integral * self.measure
         };

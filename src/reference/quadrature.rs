@@ -128,12 +128,17 @@ impl Ord for Piece {
     }
 }
 
-/// Integral of `integrand` over `[0,1]`, begun on the pieces between `breaks` (in any order; those outside (0,1) are
+/// Integral of `integrand` over `[0,end]`, begun on the pieces between `breaks` (in any order; those outside are
 /// ignored), to the error `relative` times the integral of the integrand's magnitude.
-pub fn integrate(integrand: impl Fn(f64) -> f64, breaks: &mut Vec<f64>, relative: f64) -> Estimate {
-    breaks.retain(|s| *s > 0.0 && *s < 1.0);
+pub fn integrate(
+    integrand: impl Fn(f64) -> f64,
+    breaks: &mut Vec<f64>,
+    end: f64,
+    relative: f64,
+) -> Estimate {
+    breaks.retain(|s| *s > 0.0 && *s < end);
     breaks.push(0.0);
-    breaks.push(1.0);
+    breaks.push(end);
     breaks.sort_by(f64::total_cmp);
     let mut open: BinaryHeap<Piece> = breaks
         .windows(2)
@@ -174,7 +179,7 @@ mod tests {
 
     /// The integral of a function of which the rule sees 21 samples a piece.
     fn over(integrand: impl Fn(f64) -> f64, breaks: &[f64]) -> f64 {
-        integrate(integrand, &mut breaks.to_vec(), 1e-12).value
+        integrate(integrand, &mut breaks.to_vec(), 1.0, 1e-12).value
     }
 
     #[test]

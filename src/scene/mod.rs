@@ -5,40 +5,40 @@
 
 mod locate;
 mod read;
+mod sources;
 mod validate;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A complete scene: camera, image size, the way of integrating, and the sources of light.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+pub use sources::{Beam, Curve, Cylinder, Profile, Sphere, Torus};
+
+use crate::image::DepthImage;
+
+/// A complete scene: camera, image size, the way of integrating, what hides the light, and the sources of light.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Who looks, and along which rays.
     pub camera: Camera,
     /// Size of the image.
-    #[serde(default)]
     pub image: ImageSize,
     /// How light fades along a ray; `None`: it does not (zeta = 1).
-    #[serde(default)]
     pub decay: Option<Decay>,
     /// How the integral along a ray is computed.
-    #[serde(default)]
     pub integration: Integration,
     /// How radiance becomes an 8-bit picture.
-    #[serde(default)]
     pub display: Display,
+    /// How far each pixel's ray sees, of the size of the image; `None`: nothing hides the light.
+    pub depth: Option<DepthImage>,
     /// Points of light.
-    #[serde(default, rename = "sphere")]
     pub spheres: Vec<Sphere>,
     /// Infinite lines of light.
-    #[serde(default, rename = "cylinder")]
     pub cylinders: Vec<Cylinder>,
+    /// Half-lines of light.
+    pub beams: Vec<Beam>,
     /// Rings of light.
-    #[serde(default, rename = "torus")]
     pub tori: Vec<Torus>,
     /// Quadratic curves of light.
-    #[serde(default, rename = "curve")]
     pub curves: Vec<Curve>,
 }
 
@@ -51,8 +51,10 @@ impl Scene {
             decay: None,
             integration: Integration::default(),
             display: Display::default(),
+            depth: None,
             spheres: Vec::new(),
             cylinders: Vec::new(),
+            beams: Vec::new(),
             tori: Vec::new(),
             curves: Vec::new(),
         }
@@ -60,7 +62,8 @@ impl Scene {
 
     /// Number of sources of all kinds.
     pub fn source_count(&self) -> usize {
-        self.spheres.len() + self.cylinders.len() + self.tori.len() + self.curves.len()
+        let open = self.spheres.len() + self.cylinders.len() + self.beams.len();
+        open + self.tori.len() + self.curves.len()
     }
 
     /// Where a device takes this scene's integrals, see [`Sampling`].
@@ -75,13 +78,18 @@ impl Scene {
     fn has_light_of_both_signs(&self) -> bool {
         let spheres = self.spheres.iter().map(|s| (s.coefficient, s.color));
         let cylinders = self.cylinders.iter().map(|c| (c.coefficient, c.color));
+        let beams = self.beams.iter().flat_map(|beam| {
+            let parts = [beam.coefficient, beam.cap(), beam.sphere_coefficient];
+            parts.map(|coefficient| (coefficient, beam.color))
+        });
         let tori = self.tori.iter().map(|t| (t.coefficient, t.color));
         let curves = self.curves.iter().flat_map(|curve| {
             let weights = curve.intensity.as_deref().unwrap_or(&[1.0]);
             let light = |weight| (curve.coefficient * weight, curve.color);
             weights.iter().map(light)
         });
-        let lights = spheres.chain(cylinders).chain(tori).chain(curves);
+        let open = spheres.chain(cylinders).chain(beams);
+        let lights = open.chain(tori).chain(curves);
         let (low, high) = lights.fold((DVec3::ZERO, DVec3::ZERO), |(low, high), (k, color)| {
             (low.min(k * color), high.max(k * color))
         });
@@ -273,88 +281,6 @@ pub enum ToneMap {
     Reinhard,
     /// The rational fit to the ACES filmic curve by Narkowicz 2015.
     Aces,
-}
-
-/// A point of light: field `1/|P - M|` (2015, eq. 2).
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Sphere {
-    /// The point, M.
-    #[serde(deserialize_with = "read::vector")]
-    pub center: DVec3,
-    /// The paper's energy coefficient.
-    pub coefficient: f64,
-    /// Linear RGB.
-    #[serde(deserialize_with = "read::vector")]
-    pub color: DVec3,
-}
-
-impl Default for Sphere {
-    fn default() -> Self {
-        Self {
-            center: DVec3::ZERO,
-            coefficient: 1.0,
-            color: DVec3::ONE,
-        }
-    }
-}
-
-/// An infinite line of light: field 1 over the distance to the line (2015, eq. 3).
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Cylinder {
-    /// A point of the line.
-    #[serde(default, deserialize_with = "read::vector")]
-    pub point: DVec3,
-    /// Direction of the line, of any length but zero.
-    #[serde(deserialize_with = "read::vector")]
-    pub direction: DVec3,
-    /// The paper's energy coefficient.
-    #[serde(default = "one")]
-    pub coefficient: f64,
-    /// Linear RGB.
-    #[serde(default = "white", deserialize_with = "read::vector")]
-    pub color: DVec3,
-}
-
-/// A ring of light: field 1 over the distance to the nearest point of the major circle (2015, eq. 7).
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Torus {
-    /// Middle of the ring.
-    #[serde(default, deserialize_with = "read::vector")]
-    pub center: DVec3,
-    /// Normal of the ring's plane, of any length but zero.
-    #[serde(default = "plus_z", deserialize_with = "read::vector")]
-    pub axis: DVec3,
-    /// Radius of the circle, positive.
-    pub major_radius: f64,
-    /// The paper's energy coefficient.
-    #[serde(default = "one")]
-    pub coefficient: f64,
-    /// Linear RGB.
-    #[serde(default = "white", deserialize_with = "read::vector")]
-    pub color: DVec3,
-}
-
-/// A quadratic Bezier curve of light: field 1 over the distance to its nearest point `C(t*)`, times the local intensity
-/// `S(t*)` (2015, eq. 8-17).
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Curve {
-    /// Bezier control points. They may be collinear or coincide.
-    #[serde(deserialize_with = "read::three_points")]
-    pub control_points: [DVec3; 3],
-    /// The paper's energy coefficient.
-    #[serde(default = "one")]
-    pub coefficient: f64,
-    /// Linear RGB.
-    #[serde(default = "white", deserialize_with = "read::vector")]
-    pub color: DVec3,
-    /// The local-intensity series W: weights of a clamped uniform quadratic B-spline over the curve's parameter, at
-    /// least 3; `None`: 1 everywhere.
-    #[serde(default)]
-    pub intensity: Option<Vec<f64>>,
 }
 
 fn one() -> f64 {

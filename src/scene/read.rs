@@ -6,9 +6,74 @@ use glam::DVec3;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-use super::Scene;
 use super::locate::{KeyMap, line_and_column};
+use super::{
+    Beam, Camera, Curve, Cylinder, Decay, Display, ImageSize, Integration, Scene, Sphere, Torus,
+};
 use crate::error::{Error, Result, SceneError};
+use crate::image::{DepthAlong, DepthImage};
+
+/// A scene as a file has it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SceneFile {
+    camera: Camera,
+    #[serde(default)]
+    image: ImageSize,
+    #[serde(default)]
+    decay: Option<Decay>,
+    #[serde(default)]
+    integration: Integration,
+    #[serde(default)]
+    display: Display,
+    #[serde(default)]
+    depth: Option<DepthFile>,
+    #[serde(default)]
+    sphere: Vec<Sphere>,
+    #[serde(default)]
+    cylinder: Vec<Cylinder>,
+    #[serde(default)]
+    beam: Vec<Beam>,
+    #[serde(default)]
+    torus: Vec<Torus>,
+    #[serde(default)]
+    curve: Vec<Curve>,
+}
+
+/// A depth image in a file of its own.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DepthFile {
+    /// From the folder of the scene.
+    file: PathBuf,
+    #[serde(default)]
+    along: DepthAlong,
+}
+
+impl SceneFile {
+    /// Reads what lies in other files, and checks the scene.
+    fn into_scene(self, folder: &Path) -> std::result::Result<Scene, SceneError> {
+        let open = |depth: DepthFile| {
+            DepthImage::open(folder.join(&depth.file), depth.along)
+                .map_err(|error| SceneError::value("depth.file", error.to_string()))
+        };
+        let scene = Scene {
+            camera: self.camera,
+            image: self.image,
+            decay: self.decay,
+            integration: self.integration,
+            display: self.display,
+            depth: self.depth.map(open).transpose()?,
+            spheres: self.sphere,
+            cylinders: self.cylinder,
+            beams: self.beam,
+            tori: self.torus,
+            curves: self.curve,
+        };
+        scene.check()?;
+        Ok(scene)
+    }
+}
 
 impl Scene {
     /// Reads and validates a scene file; the ending chooses: `.json` is JSON, everything else TOML.
@@ -21,29 +86,20 @@ impl Scene {
         let is_json = path
             .extension()
             .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-        let scene = if is_json {
-            Self::from_json(&text)
-        } else {
-            Self::from_toml(&text)
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let scene = match is_json {
+            true => from_json(&text, folder),
+            false => from_toml(&text, folder),
         };
         scene.map_err(|error| name_file(error, path))
     }
 
-    /// Reads and validates a scene in TOML.
+    /// Reads and validates a scene in TOML; a depth image's path is from the working folder.
     ///
     /// # Errors
     /// [`Error::Scene`] with line, column and key.
     pub fn from_toml(text: &str) -> Result<Self> {
-        let locate = |key: &str| {
-            let offset = KeyMap::new(text).offset_of(key);
-            line_and_column(text, offset.unwrap_or(0))
-        };
-        let scene: Self = toml::from_str(text).map_err(|error| toml_fault(text, &error))?;
-        scene.check().map_err(|mut fault| {
-            fault.position = Some(locate(&fault.key));
-            fault
-        })?;
-        Ok(scene)
+        from_toml(text, Path::new(""))
     }
 
     /// Reads and validates a scene in JSON, of the same structure as the TOML.
@@ -51,35 +107,51 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with the key; faults of the syntax have line and column too.
     pub fn from_json(text: &str) -> Result<Self> {
-        let text = text.trim_start_matches('\u{feff}');
-        if text.trim().is_empty() {
-            return Err(empty_file().into());
-        }
-        let mut reader = serde_json::Deserializer::from_str(text);
-        let scene: Self = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-            let key = match error.path().to_string() {
-                unknown if unknown == "." || unknown == "?" => String::new(),
-                key => key,
-            };
-            let inner = error.inner();
-            let message = plain_words(without_position(&inner.to_string()));
-            let (key, message) = name_missing(key, message);
-            SceneError {
-                path: None,
-                position: (inner.line() > 0).then(|| (inner.line(), inner.column())),
-                key,
-                message,
-            }
-        })?;
-        reader.end().map_err(|error| SceneError {
-            path: None,
-            position: Some((error.line(), error.column())),
-            key: String::new(),
-            message: plain_words(without_position(&error.to_string())),
-        })?;
-        scene.check()?;
-        Ok(scene)
+        from_json(text, Path::new(""))
     }
+}
+
+fn from_toml(text: &str, folder: &Path) -> Result<Scene> {
+    let locate = |key: &str| {
+        let offset = KeyMap::new(text).offset_of(key);
+        line_and_column(text, offset.unwrap_or(0))
+    };
+    let file: SceneFile = toml::from_str(text).map_err(|error| toml_fault(text, &error))?;
+    let scene = file.into_scene(folder).map_err(|mut fault| {
+        fault.position = Some(locate(&fault.key));
+        fault
+    })?;
+    Ok(scene)
+}
+
+fn from_json(text: &str, folder: &Path) -> Result<Scene> {
+    let text = text.trim_start_matches('\u{feff}');
+    if text.trim().is_empty() {
+        return Err(empty_file().into());
+    }
+    let mut reader = serde_json::Deserializer::from_str(text);
+    let file: SceneFile = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+        let key = match error.path().to_string() {
+            unknown if unknown == "." || unknown == "?" => String::new(),
+            key => key,
+        };
+        let inner = error.inner();
+        let message = plain_words(without_position(&inner.to_string()));
+        let (key, message) = name_missing(key, message);
+        SceneError {
+            path: None,
+            position: (inner.line() > 0).then(|| (inner.line(), inner.column())),
+            key,
+            message,
+        }
+    })?;
+    reader.end().map_err(|error| SceneError {
+        path: None,
+        position: Some((error.line(), error.column())),
+        key: String::new(),
+        message: plain_words(without_position(&error.to_string())),
+    })?;
+    Ok(file.into_scene(folder)?)
 }
 
 fn read_text(path: &Path) -> Result<String> {

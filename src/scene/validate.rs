@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Camera, Curve, ImageSize, Integration, Measure, Method, Sampling, Scene};
+use super::{
+    Beam, Camera, Curve, ImageSize, Integration, Measure, Method, Profile, Sampling, Scene,
+};
 use crate::error::{Result, SceneError};
 use crate::reference::CORE_FLOOR;
 
@@ -37,41 +39,52 @@ impl Scene {
         if self.display.exposure.abs() > 100.0 {
             return fault("display.exposure", "more than 100 stops");
         }
-        let most = self.greatest_integrand();
-        if most > BRIGHTEST {
+        self.check_depth()?;
+        let most = |profile| self.greatest_integrand(profile);
+        let inverse = most(Profile::Inverse);
+        if inverse > BRIGHTEST {
             return fault(
                 "decay.beta",
                 format!(
-                    "alpha / beta^2 next to a core comes to {most:.0e}, more than float32 holds"
+                    "alpha / beta^2 next to a core comes to {inverse:.0e}, more than float32 holds"
                 ),
             );
         }
         for (i, sphere) in self.spheres.iter().enumerate() {
             let key = |name| format!("sphere[{i}].{name}");
             vector(&key("center"), sphere.center)?;
-            light(&key, sphere.coefficient, sphere.color, most)?;
+            light(
+                &key,
+                sphere.coefficient,
+                sphere.color,
+                most(sphere.profile),
+            )?;
         }
         for (i, cylinder) in self.cylinders.iter().enumerate() {
             let key = |name| format!("cylinder[{i}].{name}");
             vector(&key("point"), cylinder.point)?;
             direction(&key("direction"), cylinder.direction)?;
+            let most = most(cylinder.profile);
             light(&key, cylinder.coefficient, cylinder.color, most)?;
+        }
+        for (i, beam) in self.beams.iter().enumerate() {
+            check_beam(i, beam, most(beam.profile))?;
         }
         for (i, torus) in self.tori.iter().enumerate() {
             let key = |name| format!("torus[{i}].{name}");
             vector(&key("center"), torus.center)?;
             direction(&key("axis"), torus.axis)?;
             positive(&key("major_radius"), torus.major_radius)?;
-            light(&key, torus.coefficient, torus.color, most)?;
+            light(&key, torus.coefficient, torus.color, most(torus.profile))?;
         }
         for (i, curve) in self.curves.iter().enumerate() {
-            check_curve(i, curve, most)?;
+            check_curve(i, curve, most(curve.profile))?;
         }
         Ok(())
     }
 
     /// The greatest value that decay times field times measure can take, on a ray through a core.
-    fn greatest_integrand(&self) -> f64 {
+    fn greatest_integrand(&self, profile: Profile) -> f64 {
         let decay = self.decay.map_or(1.0, |decay| decay.at(0.0));
         let length = self.camera.ray_length();
         let least_distance = (CORE_FLOOR * length).max(self.integration.softening);
@@ -79,7 +92,28 @@ impl Scene {
             Measure::Parameter => 1.0,
             Measure::Length => length,
         };
-        decay / least_distance * measure.max(1.0)
+        let field = match profile {
+            Profile::Inverse => 1.0 / least_distance,
+            Profile::InverseSquare => 1.0 / (least_distance * least_distance),
+        };
+        decay * field * measure.max(1.0)
+    }
+
+    fn check_depth(&self) -> Checked {
+        let Some(depth) = &self.depth else {
+            return Ok(());
+        };
+        let (depth, image) = (depth.size(), self.image);
+        if depth == image {
+            return Ok(());
+        }
+        fault(
+            "depth",
+            format!(
+                "the depth image has {}x{} pixels, the image {}x{}; they must be equal",
+                depth.width, depth.height, image.width, image.height
+            ),
+        )
     }
 }
 
@@ -158,6 +192,26 @@ fn check_integration(integration: &Integration) -> Checked {
         return fault("integration.softening", "must not be negative");
     }
     Ok(())
+}
+
+fn check_beam(index: usize, beam: &Beam, most: f64) -> Checked {
+    let key = |name| format!("beam[{index}].{name}");
+    vector(&key("tip"), beam.tip)?;
+    direction(&key("direction"), beam.direction)?;
+    if let Some(length) = beam.taper_length {
+        positive(&key("taper_length"), length)?;
+        if beam.cap_coefficient.is_some() {
+            return fault(
+                key("cap_coefficient"),
+                "behind its tip a beam has a cap or a taper: leave out cap_coefficient or taper_length",
+            );
+        }
+    }
+    finite(&key("cap_coefficient"), beam.cap())?;
+    finite(&key("sphere_coefficient"), beam.sphere_coefficient)?;
+    let strongest = beam.coefficient.abs().max(beam.cap().abs()) + beam.sphere_coefficient.abs();
+    light(&key, beam.coefficient, beam.color, most)?;
+    light(&key, strongest, beam.color, most)
 }
 
 fn check_curve(index: usize, curve: &Curve, most: f64) -> Checked {

@@ -47,7 +47,7 @@ __kernel void spline(__global const SplinePiece *pieces, __global const float *c
     __kernel void kind##_distance(__global const Kind *first, __global const float *ox, __global const float *oy,      \
                                   __global const float *oz, __global const float *dx, __global const float *dy,        \
                                   __global const float *dz, __global const float *ss, __global float *result) {        \
-        Sources sources = {0, 0, 0, 0, 0};                                                                             \
+        Sources sources = {0, 0, 0, 0, 0, 0};                                                                          \
         sources.list = first;                                                                                          \
         const fine3v origin = {to_finev(LOAD(ox)), to_finev(LOAD(oy)), to_finev(LOAD(oz))};                            \
         const fine3v span = {to_finev(LOAD(dx)), to_finev(LOAD(dy)), to_finev(LOAD(dz))};                              \

@@ -71,15 +71,16 @@ pub fn sphere(center: [f64; 3], coefficient: f64) -> Sphere {
         center: center.into(),
         coefficient,
         color: DVec3::new(1.0, 0.5, 0.25),
+        ..Sphere::default()
     }
 }
 
 pub fn cylinder(point: [f64; 3], direction: [f64; 3]) -> Cylinder {
     Cylinder {
         point: point.into(),
-        direction: direction.into(),
         coefficient: 2.0,
         color: DVec3::new(0.3, 0.6, 0.9),
+        ..Cylinder::new(direction.into())
     }
 }
 
@@ -87,18 +88,18 @@ pub fn torus(center: [f64; 3], axis: [f64; 3], major_radius: f64) -> Torus {
     Torus {
         center: center.into(),
         axis: axis.into(),
-        major_radius,
         coefficient: 5.1,
         color: DVec3::new(0.2, 0.4, 1.0),
+        ..Torus::new(major_radius)
     }
 }
 
 pub fn curve(points: [[f64; 3]; 3], intensity: Option<Vec<f64>>) -> Curve {
     Curve {
-        control_points: points.map(DVec3::from),
         coefficient: 5.0,
         color: DVec3::new(0.7, 0.2, 0.5),
         intensity,
+        ..Curve::new(points.map(DVec3::from))
     }
 }
 

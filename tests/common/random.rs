@@ -65,29 +65,30 @@ pub fn add_source(random: &mut Rng, kind: Kind, scene: &mut Scene) {
             center: point(random, 1.0),
             coefficient,
             color,
+            ..Sphere::default()
         }),
         Kind::Cylinder => scene.cylinders.push(Cylinder {
             point: point(random, 1.0),
-            direction: point(random, 1.0),
             coefficient,
             color,
+            ..Cylinder::new(point(random, 1.0))
         }),
         Kind::Torus => scene.tori.push(Torus {
             center: point(random, 0.5),
             axis: point(random, 1.0),
-            major_radius: spread(random, 0.1, 2.0),
             coefficient,
             color,
+            ..Torus::new(spread(random, 0.1, 2.0))
         }),
         Kind::Curve => {
             let intensity = random
                 .bool()
                 .then(|| (0..3 + random.usize(0..6)).map(|_| random.f64()).collect());
             scene.curves.push(Curve {
-                control_points: [0; 3].map(|_| point(random, 1.5)),
                 coefficient,
                 color,
                 intensity,
+                ..Curve::new([0; 3].map(|_| point(random, 1.5)))
             });
         }
     }

@@ -1,0 +1,213 @@
+//! Depth: how far each pixel's ray sees before something hides the light behind it (Abe, Watanabe 2010, eq. 13, 14).
+
+use std::path::Path;
+use std::sync::Arc;
+
+use exr::image::{AnyChannel, FlatSamples, Layer};
+use exr::prelude::{AnyChannels, ReadChannels, ReadLayers, read};
+use serde::Deserialize;
+
+use crate::error::{Error, Result, SceneError};
+use crate::scene::ImageSize;
+
+/// What a depth is the length of; it begins at the eye.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DepthAlong {
+    /// The view ray itself: a distance.
+    #[default]
+    Ray,
+    /// The ray's part along the direction of view, as depth buffers and most renderers' Z have it.
+    Axis,
+}
+
+/// A depth for every pixel, world units, by rows from the top left; infinite where nothing hides the light. Clones share
+/// the values, which never change: a renderer uploads them once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DepthImage {
+    size: ImageSize,
+    along: DepthAlong,
+    values: Arc<Vec<f32>>,
+}
+
+impl DepthImage {
+    /// Takes `values` as they are.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if there is not one value for each pixel, or one is not a number or negative.
+    pub fn new(size: ImageSize, along: DepthAlong, values: Vec<f32>) -> Result<Self> {
+        let fault = |message: String| Err(SceneError::value("depth", message).into());
+        if values.len() != size.pixels() {
+            return fault(format!(
+                "{} values, {}x{} pixels need {}",
+                values.len(),
+                size.width,
+                size.height,
+                size.pixels()
+            ));
+        }
+        // NaN is no number from 0 on either.
+        if let Some(index) = values.iter().position(|depth| !(*depth >= 0.0)) {
+            let width = size.width as usize;
+            return fault(format!(
+                "{} at column {}, row {}, counted from 0; a depth is a number from 0 on, infinite where nothing hides \
+                 the light",
+                values[index],
+                index % width,
+                index / width
+            ));
+        }
+        Ok(Self {
+            size,
+            along,
+            values: Arc::new(values),
+        })
+    }
+
+    /// Reads an OpenEXR image: its channel Z or depth, else V, Y or R, or the only one there is.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if the file cannot be read, has no such channel, or holds what [`DepthImage::new`] refuses.
+    pub fn open(path: impl AsRef<Path>, along: DepthAlong) -> Result<Self> {
+        let path = path.as_ref();
+        let fail = |reason: String| Error::Input {
+            path: path.to_owned(),
+            reason,
+        };
+        let image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .all_layers()
+            .all_attributes()
+            .non_parallel()
+            .from_file(path)
+            .map_err(|error| match error {
+                exr::error::Error::Io(error) => fail(format!("cannot read: {error}")),
+                other => fail(format!("not an OpenEXR image: {other}")),
+            })?;
+        let (layer, channel) = depth_channel(&image.layer_data).map_err(fail)?;
+        let size = ImageSize {
+            width: layer.size.0 as u32,
+            height: layer.size.1 as u32,
+        };
+        let values = channel.sample_data.values_as_f32().collect();
+        Self::new(size, along, values).map_err(|error| match error {
+            Error::Scene(fault) => fail(fault.message),
+            other => other,
+        })
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> ImageSize {
+        self.size
+    }
+
+    /// What the values are lengths of.
+    pub fn along(&self) -> DepthAlong {
+        self.along
+    }
+
+    /// A depth for every pixel.
+    pub fn as_slice(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// Whether both share their values.
+    pub(crate) fn shares_values(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.values, &other.values)
+    }
+}
+
+type FlatLayer = Layer<AnyChannels<FlatSamples>>;
+
+/// The channel that holds depth, with its layer.
+fn depth_channel(
+    layers: &[FlatLayer],
+) -> std::result::Result<(&FlatLayer, &AnyChannel<FlatSamples>), String> {
+    let of_layer = |layer| {
+        let FlatLayer { channel_data, .. }: &FlatLayer = layer;
+        channel_data.list.iter().map(move |channel| (layer, channel))
+    };
+    let all: Vec<_> = layers.iter().flat_map(of_layer).collect();
+    // Renderers put the name of a view layer or a pass before a channel's own.
+    let is_named = |channel: &AnyChannel<FlatSamples>, wanted: &str| {
+        let full = channel.name.to_string().to_lowercase();
+        full.rsplit('.').next() == Some(wanted)
+    };
+    let wanted = ["z", "depth", "v", "y", "r"].iter();
+    let named = wanted.flat_map(|wanted| all.iter().find(|(_, c)| is_named(c, wanted)));
+    match (named.into_iter().next(), all.as_slice()) {
+        (Some(found), _) | (None, [found]) => Ok(*found),
+        _ => {
+            let names: Vec<String> = all.iter().map(|(_, c)| c.name.to_string()).collect();
+            Err(format!(
+                "no channel named Z, depth, V, Y or R; there are: {}",
+                names.join(", ")
+            ))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use exr::prelude::{Encoding, Image, LayerAttributes, SmallVec, WritableImage};
+
+    const SIZE: ImageSize = ImageSize {
+        width: 3,
+        height: 2,
+    };
+
+    fn write(path: &Path, channels: &[(&str, f32)]) {
+        let channel = |(name, value): &(&str, f32)| {
+            AnyChannel::new(*name, FlatSamples::F32(vec![*value; 6]))
+        };
+        let list: SmallVec<[_; 4]> = channels.iter().map(channel).collect();
+        let layer = Layer::new(
+            (3, 2),
+            LayerAttributes::default(),
+            Encoding::SMALL_LOSSLESS,
+            AnyChannels::sort(list),
+        );
+        Image::from_layer(layer).write().to_file(path).unwrap();
+    }
+
+    #[test]
+    fn the_channel_of_depth_is_found_by_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("depth.exr");
+        let opened = |channels: &[(&str, f32)]| {
+            write(&path, channels);
+            DepthImage::open(&path, DepthAlong::Axis).map(|image| image.as_slice()[5])
+        };
+        let color = [("R", 1.0), ("G", 2.0), ("B", 3.0)];
+        assert_eq!(opened(&color).unwrap(), 1.0);
+        assert_eq!(opened(&[&color[..], &[("Z", 4.0)]].concat()).unwrap(), 4.0);
+        let pass = [("Main.Combined.R", 1.0), ("Main.Depth.Z", 5.0)];
+        assert_eq!(opened(&pass).unwrap(), 5.0);
+        assert_eq!(opened(&[("distance", 6.0)]).unwrap(), 6.0);
+        let unknown = opened(&[("a", 6.0), ("b", 7.0)]).unwrap_err().to_string();
+        assert!(unknown.contains("there are: a, b"), "{unknown}");
+        let not_a_number = opened(&[("Z", f32::NAN)]).unwrap_err().to_string();
+        assert!(not_a_number.contains("NaN at column 0, row 0"), "{not_a_number}");
+    }
+
+    #[test]
+    fn only_depths_are_taken() {
+        let with = |value: f32| {
+            let mut values = vec![1.0; 6];
+            values[4] = value;
+            DepthImage::new(SIZE, DepthAlong::Ray, values)
+        };
+        for good in [0.0, 1.5, f32::INFINITY] {
+            assert!(with(good).is_ok());
+        }
+        for bad in [f32::NAN, -0.1, f32::NEG_INFINITY] {
+            let message = with(bad).unwrap_err().to_string();
+            assert!(message.contains("column 1, row 1"), "{message}");
+        }
+        let short = DepthImage::new(SIZE, DepthAlong::Ray, vec![1.0; 5]).unwrap_err();
+        assert!(short.to_string().contains("5 values, 3x2 pixels need 6"));
+    }
+}
