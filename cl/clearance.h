@@ -48,12 +48,10 @@ Clearance cylinder_clearance(const Ray *const ray, const Sources *const sources,
 Clearance beam_clearance(const Ray *const ray, const Sources *const sources, const uint index, const float pixel_step) {
     const beam_path path = beam_along(ray, sources, index);
     const floatv s = clamp(nearest_along(&path.to_line), 0.0f, ray->end);
-    const floatv height = fma(path.height_slope, s, path.height);
-    const intv is_ahead =
-        path.per_taper > 0.0f ? fma(height, splat(path.per_taper), splat(1.0f)) >= 0.0f : height >= 0.0f;
+    const floatv ahead = path.has_taper ? fma(path.taper_slope, s, path.taper) : fma(path.height_slope, s, path.height);
     const Clearance of_line = quadratic_clearance(ray, &path.to_line, pixel_step);
     const Clearance of_tip = quadratic_clearance(ray, &path.to_tip, pixel_step);
-    return clear_by(select(of_tip.distance2, min(of_line.distance2, of_tip.distance2), is_ahead));
+    return clear_by(select(of_tip.distance2, min(of_line.distance2, of_tip.distance2), ahead >= 0.0f));
 }
 
 // The distance of a peak from the ray, which it has in the complex plane.

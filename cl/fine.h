@@ -59,9 +59,3 @@ fine3v fine_cross3(const fine3v a, const fine3v b) {
     const fine3v r = {fma(a.y, b.z, -a.z * b.y), fma(a.z, b.x, -a.x * b.z), fma(a.x, b.y, -a.y * b.x)};
     return r;
 }
-
-// Never 0.
-floatv fine_squared_length(const fine3v v) {
-    const float3v f = from_fine3(v);
-    return max(dot3(f, f), 1e-30f);
-}

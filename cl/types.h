@@ -90,11 +90,11 @@ typedef struct {
     float4 point, point_rest;         // the point of the line nearest to the eye
     float4 direction, direction_rest; // unit
     float4 emission;                  // colour alone, times |E - S| where light is measured by length
-    float line, cap, sphere; // coefficients: of the line ahead of the tip, of the point behind it, of the point
-                             // everywhere
-    float per_taper;         // 1 over the length of the taper behind the tip; 0 without
+    float line, cap, sphere;         // coefficients: of the line ahead of the tip, of the point behind it, of the point
+                                     // everywhere
+    float per_taper, per_taper_rest; // 1 over the length of the taper behind the tip; 0 without
     uint is_square;
-    uint padding_0, padding_1, padding_2;
+    uint padding_0, padding_1;
 } Beam;
 
 typedef struct {

@@ -58,14 +58,16 @@ fn marks_left(
         pixel_step: 1e-3,
         ..bytemuck::Zeroable::zeroed()
     };
-    let lists: [&dyn Argument; 7] = [
+    let lists: [&dyn Argument; 9] = [
         &upload(&compute, &nodes),
         &upload(&compute, &packed.spheres),
         &upload(&compute, &packed.cylinders),
+        &upload(&compute, &packed.beams),
         &upload(&compute, &packed.tori),
         &upload(&compute, &packed.curves),
         &upload(&compute, &packed.spline_pieces),
         &upload(&compute, &[0_u32; 16]),
+        &upload(&compute, &vec![5.0_f32; pixels]),
     ];
     let (places, light) = (
         upload(&compute, &[0_u32; 6]),

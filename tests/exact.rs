@@ -18,7 +18,7 @@ const TOLERANCES: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
 fn ray_limit(kind: &str) -> f64 {
     match kind {
         "sphere" => 1e-4,
-        "cylinder" | "curve-straight" => 3e-4,
+        "cylinder" | "curve-straight" | "beam" => 3e-4,
         _ => 1e-3,
     }
 }
@@ -146,7 +146,7 @@ fn the_known_rays_are_met_on_every_lane_width_and_in_every_form() {
             "-DNO_DOUBLES",
         ] {
             let rows = through(&mut renderer(lanes, form));
-            assert_eq!(rows.len(), 7 * 16);
+            assert_eq!(rows.len(), 10 * 16);
             for row in &rows {
                 assert!(
                     row.relative_error <= ray_limit(&row.kind),

@@ -15,12 +15,12 @@ const REFERENCE_ERROR: f64 = 1e-8;
 /// float64 sums of the same 201 terms.
 const SIMPSON_ERROR: f64 = 1e-11;
 
-/// Rays of the kinds that this version draws: sphere, cylinder, torus and four kinds of curve.
-const KNOWN: usize = 7 * 16;
+/// Rays of ten kinds.
+const KNOWN: usize = 10 * 16;
 
 fn through(renderer: &mut Renderer, method: Method) -> Vec<Row> {
     let rays = built_in_rays().unwrap();
-    assert_eq!(rays.len(), 160);
+    assert_eq!(rays.len(), KNOWN);
     let rows = verify(renderer, "device", &rays, method, 1e-3).unwrap();
     assert_eq!(rows.len(), KNOWN);
     rows

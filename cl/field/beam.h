@@ -9,8 +9,9 @@
 typedef struct {
     Quadratic to_line, to_tip;   // squared distances
     floatv height, height_slope; // over the plane
+    floatv taper, taper_slope;   // the same over the end of the taper, of its length
     float line, cap, sphere;     // coefficients
-    float per_taper;             // 1 over the length of the taper; 0 without
+    bool has_taper;
     floatv floor2;
     uint is_square;
 } beam_path;
@@ -25,7 +26,10 @@ INLINE beam_path beam_along(const Ray *const ray, const Sources *const sources, 
     path.height = from_finev(fine_dot3(from_tip, direction));
     path.height_slope = ray->stretch * from_finev(fine_dot3(ray->fine_toward, direction));
     path.line = beam->line, path.cap = beam->cap, path.sphere = beam->sphere;
-    path.per_taper = beam->per_taper;
+    const fine per_taper = (fine)beam->per_taper + (fine)beam->per_taper_rest;
+    path.taper = from_finev(fma(fine_dot3(from_tip, direction), (finev)(per_taper), (finev)(1.0f)));
+    path.taper_slope = path.height_slope * beam->per_taper;
+    path.has_taper = beam->per_taper > 0.0f;
     path.floor2 = 4.0f * ray->floor2;
     path.is_square = IS_SQUARE(beam);
     return path;
@@ -36,7 +40,7 @@ floatv beam_field(const beam_path *const path, const floatv s) {
     const floatv per_line = twice_inverse_sqrt(max(quadratic_at(&path->to_line, s), path->floor2));
     const floatv per_tip = twice_inverse_sqrt(max(quadratic_at(&path->to_tip, s), path->floor2));
     const floatv of_line = profiled(per_line, path->is_square), of_tip = profiled(per_tip, path->is_square);
-    const floatv taper = path->line * max(fma(height, path->per_taper, splat(1.0f)), 0.0f);
-    const floatv behind = path->per_taper > 0.0f ? taper * of_line : path->cap * of_tip;
+    const floatv taper = max(fma(path->taper_slope, s, path->taper), 0.0f);
+    const floatv behind = path->has_taper ? path->line * taper * of_line : path->cap * of_tip;
     return fma(splat(path->sphere), of_tip, select(path->line * of_line, behind, height < 0.0f));
 }

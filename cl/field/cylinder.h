@@ -23,7 +23,8 @@ INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, con
     const float3v span = cross3(ray->span, along);
     Quadratic distance2 = squared_length_along(cross3(from_point, along), span, length3(span));
     const fine3v closest = fine_between(ray, nearest_along(&distance2), point, point_rest);
-    distance2.least = fine_squared_length(fine_cross3(closest, fine3(direction, direction_rest)));
+    const float3v from_line = from_fine3(fine_cross3(closest, fine3(direction, direction_rest)));
+    distance2.least = squared_length_beside(&distance2, from_line, span);
     return doubled(distance2, ray->softening2);
 }
 

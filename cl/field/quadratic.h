@@ -19,6 +19,15 @@ INLINE Quadratic squared_length_along(const float3v start, const float3v span, c
     return q;
 }
 
+// The squared length of what stands at the parameter of the least, which float32 has missed by a little: without what
+// lies along the span. Never 0.
+floatv squared_length_beside(const Quadratic *const q, const float3v start, const float3v span) {
+    const floatv per_slope = inverse(q->slope);
+    const floatv missed = clamp(-dot3(start, span) * per_slope * per_slope, -1e-4f, 1e-4f);
+    const float3v beside = fma3(span, missed, start);
+    return max(dot3(beside, beside), 1e-30f);
+}
+
 floatv length3(const float3v v) {
     return 0.5f * twice_sqrt(max(dot3(v, v), 1e-36f));
 }

@@ -18,7 +18,7 @@ INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, co
     const float3v from_point = subtract3(ray->origin, uniform3(point));
     Quadratic distance2 = squared_length_along(from_point, ray->span, ray->length);
     const fine3v closest = fine_between(ray, nearest_along(&distance2), point, point_rest);
-    distance2.least = fine_squared_length(closest);
+    distance2.least = squared_length_beside(&distance2, from_fine3(closest), ray->span);
     return doubled(distance2, ray->softening2);
 }
 

@@ -12,7 +12,6 @@
 #include "../elementary.h"
 #include "../field/profile.h"
 #include "../field/quadratic.h"
-#include "../ray.h"
 
 // A part of a ray, and the light at its ends; linear in s between.
 typedef struct {
@@ -23,14 +22,6 @@ typedef struct {
 Stretch evenly_lit(const floatv from, const floatv to) {
     const Stretch stretch = {from, to, splat(1.0f), splat(1.0f)};
     return stretch;
-}
-
-Stretch part_of(const Stretch stretch, const floatv from, const floatv to) {
-    const floatv per_length = inverse(max(stretch.to - stretch.from, 1e-30f));
-    const floatv growth = (stretch.light_to - stretch.light_from) * per_length;
-    const Stretch part = {from, to, fma(growth, from - stretch.from, stretch.light_from),
-                          fma(growth, to - stretch.from, stretch.light_from)};
-    return part;
 }
 
 // What a stretch comes to in v: index 0 its beginning, 1 its end.
@@ -44,10 +35,10 @@ typedef struct {
     floatv a; // of f^2 = a v^2 + ..
 } Ends;
 
-INLINE Ends ends_of(const Quadratic *const distance2, const Decay decay, const Stretch stretch) {
+// x0 and x1 are slope s + offset at the ends.
+INLINE Ends ends_of(const Quadratic *const distance2, const Decay decay, const Stretch stretch, const floatv x0,
+                    const floatv x1) {
     const floatv least = distance2->least;
-    const floatv x0 = fma(distance2->slope, stretch.from, distance2->offset);
-    const floatv x1 = fma(distance2->slope, stretch.to, distance2->offset);
     Ends ends;
     ends.n0 = nearness(decay, stretch.from), ends.n1 = nearness(decay, stretch.to);
     ends.l0 = ends.n0 * stretch.light_from, ends.l1 = ends.n1 * stretch.light_to;

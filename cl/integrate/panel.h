@@ -5,7 +5,6 @@
 #pragma once
 #include "../decay.h"
 #include "../elementary.h"
-#include "../field/profile.h"
 #include "../ray.h"
 
 // The advance of v below which a panel is empty.

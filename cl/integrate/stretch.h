@@ -4,37 +4,49 @@
 #include "closed_form.h"
 #include "closed_form_square.h"
 
-INLINE floatv without_floor(const Quadratic *const distance2, const Decay decay, const Stretch stretch,
-                            const uint is_square) {
-    const Ends ends = ends_of(distance2, decay, stretch);
-    const floatv over_v =
-        is_square ? inverse_square_over(&ends, distance2->least) : inverse_over(&ends, distance2->least);
-    return decay.strength * over_v;
+INLINE floatv without_floor(const Quadratic *const distance2, const Decay decay, const Stretch stretch, const floatv x0,
+                            const floatv x1, const uint is_square) {
+    const Ends ends = ends_of(distance2, decay, stretch, x0, x1);
+    return is_square ? inverse_square_over(&ends, distance2->least) : inverse_over(&ends, distance2->least);
 }
 
-// Where the ray is closer to the core than the floor of all distances the field is constant; a ray in a million.
+Stretch part_of(const Stretch stretch, const floatv from, const floatv to) {
+    const floatv per_length = inverse(max(stretch.to - stretch.from, 1e-30f));
+    const floatv growth = (stretch.light_to - stretch.light_from) * per_length;
+    const Stretch part = {from, to, fma(growth, from - stretch.from, stretch.light_from),
+                          fma(growth, to - stretch.from, stretch.light_from)};
+    return part;
+}
+
+// Where the ray is closer to the core than the floor of all distances the field is constant; a ray in a million. So
+// short a part has no digits left in s, but in x = slope s + offset.
 floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay, const Stretch stretch,
-                  const uint is_square) {
+                  const floatv x0, const floatv x1, const uint is_square) {
     const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
-    const floatv nearest = -distance2->offset * per_slope;
-    const floatv reach = 0.5f * twice_sqrt(max(floor2 - distance2->least, 1e-36f)) * per_slope;
-    const floatv begin = clamp(nearest - reach, stretch.from, stretch.to);
-    const floatv end = clamp(nearest + reach, stretch.from, stretch.to);
-    const Stretch flat = part_of(stretch, begin, end);
+    const floatv reach = 0.5f * twice_sqrt(max(floor2 - distance2->least, 1e-36f));
+    const floatv x_begin = clamp(-reach, x0, x1), x_end = clamp(reach, x0, x1);
+    const floatv begin = select((x_begin - distance2->offset) * per_slope, stretch.from, x_begin == x0);
+    const floatv end = select((x_end - distance2->offset) * per_slope, stretch.to, x_end == x1);
+    const Stretch before = part_of(stretch, stretch.from, clamp(begin, stretch.from, stretch.to));
+    const Stretch after = part_of(stretch, clamp(end, stretch.from, stretch.to), stretch.to);
     const floatv field = profiled(0.5f * twice_inverse_sqrt_(floor2), is_square);
-    const floatv light = 0.5f * (flat.light_from + flat.light_to);
-    const floatv inside = advance(decay, begin, nearness(decay, begin), end, nearness(decay, end));
-    const floatv before = without_floor(distance2, decay, part_of(stretch, stretch.from, begin), is_square);
-    const floatv after = without_floor(distance2, decay, part_of(stretch, end, stretch.to), is_square);
-    return before + decay.strength * inside * light * field + after;
+    const floatv light = 0.5f * (before.light_to + after.light_from);
+    const intv is_all = (x_begin == x0) & (x_end == x1);
+    const floatv length = select((x_end - x_begin) * per_slope, stretch.to - stretch.from, is_all);
+    const floatv near = nearness(decay, before.to) * nearness(decay, after.from);
+    const floatv inside = decay.beta > 0.0f ? length * near * decay.per_beta : length;
+    return without_floor(distance2, decay, before, x0, x_begin, is_square) + inside * light * field +
+           without_floor(distance2, decay, after, x_end, x1, is_square);
 }
 
 // Lengths are doubled, the integral is not.
 INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distance2, const floatv floor2,
                             const Decay decay, const uint is_square) {
-    floatv integral = without_floor(distance2, decay, stretch, is_square);
+    const floatv x0 = fma(distance2->slope, stretch.from, distance2->offset);
+    const floatv x1 = fma(distance2->slope, stretch.to, distance2->offset);
+    floatv over_v = without_floor(distance2, decay, stretch, x0, x1, is_square);
     const intv is_floored = distance2->least < floor2;
     if (any_lane(is_floored))
-        integral = select(integral, with_floor(distance2, floor2, decay, stretch, is_square), is_floored);
-    return (is_square ? 4.0f : 2.0f) * integral;
+        over_v = select(over_v, with_floor(distance2, floor2, decay, stretch, x0, x1, is_square), is_floored);
+    return (is_square ? 4.0f : 2.0f) * decay.strength * over_v;
 }

@@ -147,7 +147,8 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     *peak = nearer_peak(peaks->first, peaks->second, from, to);
     *base = clamp(peak->re, from, to);
     torus_near near = torus_near_at(peaks, *base);
-    const intv is_close = max(fabs(near.excess), near.height * near.height) < 0.02f * radius2;
+    const intv is_close =
+        max(fabs(near.excess), near.height * near.height) < (path->is_square ? 0.5f : 0.02f) * radius2;
     if (!any_lane(is_close)) {
         peak->re -= *base;
         return near;

@@ -139,10 +139,10 @@ device_structs! {
         cap: f32 = 116,
         sphere: f32 = 120,
         per_taper: f32 = 124,
-        is_square: u32 = 128,
-        padding_0: u32 = 132,
-        padding_1: u32 = 136,
-        padding_2: u32 = 140,
+        per_taper_rest: f32 = 128,
+        is_square: u32 = 132,
+        padding_0: u32 = 136,
+        padding_1: u32 = 140,
     }
     /// A ring of light.
     Torus [96] {

@@ -203,6 +203,7 @@ fn cylinder(frame: &Frame, cylinder: &Cylinder) -> layout::Cylinder {
 
 fn beam(frame: &Frame, beam: &Beam) -> layout::Beam {
     let tip = frame.position(beam.tip);
+    let per_taper = beam.taper_length.map_or(0.0, |length| 1.0 / length);
     let (point, direction) = line(frame, beam.tip, beam.direction);
     layout::Beam {
         tip: tip.value,
@@ -215,7 +216,8 @@ fn beam(frame: &Frame, beam: &Beam) -> layout::Beam {
         line: beam.coefficient as f32,
         cap: beam.cap() as f32,
         sphere: beam.sphere_coefficient as f32,
-        per_taper: beam.taper_length.map_or(0.0, |length| 1.0 / length) as f32,
+        per_taper: per_taper as f32,
+        per_taper_rest: rest(per_taper),
         is_square: is_square(beam.profile),
         ..Zeroable::zeroed()
     }
@@ -235,15 +237,14 @@ fn is_square(profile: Profile) -> u32 {
 
 fn torus(frame: &Frame, torus: &Torus) -> layout::Torus {
     let (center, axis) = (frame.position(torus.center), fine(torus.axis.normalize()));
-    let major_radius = torus.major_radius as f32;
     layout::Torus {
         center: center.value,
         center_rest: center.rest,
         axis: axis.value,
         axis_rest: axis.rest,
         emission: frame.emission(torus.coefficient, torus.color),
-        major_radius,
-        major_radius_rest: (torus.major_radius - f64::from(major_radius)) as f32,
+        major_radius: torus.major_radius as f32,
+        major_radius_rest: rest(torus.major_radius),
         is_square: is_square(torus.profile),
         padding: 0,
     }
@@ -262,6 +263,11 @@ fn fine(v: DVec3) -> Fine {
         value: vector(v),
         rest: vector(v - value.as_dvec3()),
     }
+}
+
+/// What float32 leaves of a number.
+fn rest(value: f64) -> f32 {
+    (value - f64::from(value as f32)) as f32
 }
 
 fn vector(v: DVec3) -> [f32; 4] {
