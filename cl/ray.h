@@ -43,10 +43,17 @@ typedef struct {
 INLINE floatv end_by_depth(const Screen *const screen, const Ray *const ray, const uintv column, const uintv row) {
     const View *const view = screen->view;
     const uintv inside = min(row, (uintv)(view->height - 1u)) * view->width + min(column, (uintv)(view->width - 1u));
-    const floatv depth = gather(screen->depths, as_intv(inside));
-    const floatv per_stretch = inverse(ray->stretch); // |S - eye| / |E - S|
-    const floatv s = view->near_plane > 0.0f ? (depth - view->near_plane) * per_stretch * (1.0f / view->near_plane)
-                                             : fma(depth, splat(1.0f / view->ray_length), -per_stretch);
+    const finev depth = to_finev(gather(screen->depths, as_intv(inside)));
+    // |S - eye|, improved by a Newton step: little is left of a ray that ends next to the plane.
+    const floatv to_plane = ray->length * inverse(ray->stretch);
+    const finev guess = to_finev(to_plane);
+    const finev missing = fma(-guess, guess, fine_dot3(ray->fine_origin, ray->fine_origin));
+    const finev distance = guess + missing * to_finev(0.5f * inverse(to_plane));
+    const finev near_plane = (finev)((fine)view->near_plane + (fine)view->near_plane_rest);
+    const floatv beyond = view->near_plane > 0.0f
+                              ? from_finev(depth - near_plane) * from_finev(distance) * (1.0f / view->near_plane)
+                              : from_finev(depth - distance);
+    const floatv s = beyond * (1.0f / view->ray_length);
     return clamp(s, 0.0f, 1.0f);
 }
 

@@ -137,6 +137,21 @@ bool needs_polish(const curve_path *const path, const floatv distance2) {
 #endif
 }
 
+// Moves a core point C(1/2 + x), from which `offset` begins, to the nearest one that float32 can name: the cubic has
+// missed it by some digits.
+INLINE floatv nearest_core(const curve_path *const path, const floatv x, float3v *const offset) {
+    const floatv velocity_across = curve_velocity_across(path, x);
+    const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
+    const floatv facing = max(fma(-2.0f * path->bend, offset->y, speed2), max(0.1f * speed2, 1e-30f));
+    const floatv behind = fma(offset->x, path->velocity_along, offset->y * velocity_across);
+    const floatv missed = clamp(behind * inverse(facing), -1e-5f, 1e-5f);
+    const floatv nearest = select(x, clamp(x + missed, -0.5f, 0.5f), fabs(x) < 0.5f);
+    const floatv moved = nearest - x;
+    offset->x -= path->velocity_along * moved;
+    offset->y -= fma(splat(path->bend), moved, velocity_across) * moved;
+    return nearest;
+}
+
 INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
                                  floatv *const base) {
     const curve_path *const path = &peaks->path;
@@ -149,13 +164,14 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
 
     const curve_point point = curve_point_at(path, *base);
     floatv distance2;
-    const floatv x = nearest_on_curve(path, &point, &distance2);
+    floatv x = nearest_on_curve(path, &point, &distance2);
     const curve_offset seen = offset_from_curve(path, &point, x);
     float3v offset = {seen.along, seen.across, point.normal};
     const float3v from_middle = {point.along, point.across, point.normal};
     const floatv size2 = dot3(from_middle, from_middle) + path->velocity_along * path->velocity_along;
     if (any_lane(distance2 < 1e-3f * size2)) {
         offset = offset_from_core(peaks, *base, x);
+        x = nearest_core(path, x, &offset);
         distance2 = dot3(offset, offset);
     }
     const floatv velocity_across = curve_velocity_across(path, x);

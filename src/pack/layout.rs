@@ -36,7 +36,7 @@ macro_rules! device_structs {
 
 device_structs! {
     /// The pixel grid on the projection plane.
-    View [144] {
+    View [160] {
         first_pixel: [f32; 4] = 0,
         column_step: [f32; 4] = 16,
         row_step: [f32; 4] = 32,
@@ -53,8 +53,12 @@ device_structs! {
         width: u32 = 124,
         height: u32 = 128,
         near_plane: f32 = 132,
-        hides_all: f32 = 136,
-        hides_nothing: f32 = 140,
+        near_plane_rest: f32 = 136,
+        hides_all: f32 = 140,
+        hides_nothing: f32 = 144,
+        padding_0: f32 = 148,
+        padding_1: f32 = 152,
+        padding_2: f32 = 156,
     }
     /// One launch.
     Launch [64] {

@@ -138,6 +138,7 @@ fn depth_limits(plane: &ViewPlane, scene: &Scene) -> layout::View {
     };
     layout::View {
         near_plane: near_plane as f32,
+        near_plane_rest: rest(near_plane),
         hides_all: ((1.0 - MARGIN) * plane.near) as f32,
         hides_nothing: ((1.0 + MARGIN) * (farthest + plane.ray_length)) as f32,
         ..view
