@@ -38,12 +38,18 @@ typedef struct {
     __global const float *depths; // of every pixel, row by row
 } Screen;
 
-// Where the depth of a pixel ends its ray (Abe, Watanabe 2010, eq. 13, 14): depths begin at the eye, s at the
-// projection plane. Pixels beside the image take the depth of the nearest one in it.
-INLINE floatv end_by_depth(const Screen *const screen, const Ray *const ray, const uintv column, const uintv row) {
+// Pixels beside the image take the depth of the nearest one in it.
+floatv depth_of_pixel(const Screen *const screen, const uintv column, const uintv row) {
     const View *const view = screen->view;
     const uintv inside = min(row, (uintv)(view->height - 1u)) * view->width + min(column, (uintv)(view->width - 1u));
-    const finev depth = to_finev(gather(screen->depths, as_intv(inside)));
+    return gather(screen->depths, as_intv(inside));
+}
+
+// Where the depth of a pixel ends its ray (Abe, Watanabe 2010, eq. 13, 14): depths begin at the eye, s at the
+// projection plane.
+INLINE floatv end_by_depth(const Screen *const screen, const Ray *const ray, const uintv column, const uintv row) {
+    const View *const view = screen->view;
+    const finev depth = to_finev(depth_of_pixel(screen, column, row));
     // |S - eye|, improved by a Newton step: little is left of a ray that ends next to the plane.
     const floatv to_plane = ray->length * inverse(ray->stretch);
     const finev guess = to_finev(to_plane);

@@ -22,8 +22,6 @@ typedef struct {
     float near_plane, near_plane_rest; // where depths are taken along the axis of view, the eye's distance from the
                                        // projection plane; 0: they are taken along the ray
     float hides_all;                   // a depth up to here hides all of any ray
-    float hides_nothing;               // and one from here on nothing
-    float padding_0, padding_1, padding_2;
 } View;
 
 // One launch: which pixels (or rays), and which part of each list of sources.

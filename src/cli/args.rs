@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use energywave::Error;
+use energywave::image::{DepthAlong, DepthImage};
 use energywave::scene::{ImageSize, Method, Sampling, Scene};
 
 /// Volumetric energy effects, integrated along every view ray on any OpenCL device.
@@ -73,9 +74,9 @@ pub struct VerifyArguments {
 pub struct BenchArguments {
     /// Scene file to measure instead of the paper's tables
     pub scene: Option<PathBuf>,
-    /// One of the paper's tables: 2 (torus) or 3 (Bezier); both without
-    #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3), conflicts_with = "scene")]
-    pub table: Option<u8>,
+    /// A paper's table: 2 (torus) or 3 (Bezier) of 2015, both without; 2010 (beam, with and without hidden surfaces)
+    #[arg(long, value_enum, conflicts_with = "scene")]
+    pub table: Option<TableName>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -136,6 +137,33 @@ pub struct Overrides {
     /// Where the exact method takes integrals [default: the scene's, else tiles]; chooses --method exact
     #[arg(long, requires = "scene")]
     pub sampling: Option<SamplingName>,
+    /// Depth image (.exr) of the scene's size, which hides the light behind it
+    #[arg(long, value_name = "FILE", requires = "scene")]
+    pub depth: Option<PathBuf>,
+    /// What the depths of --depth are lengths of [default: ray]
+    #[arg(long, value_name = "WAY", requires = "depth")]
+    pub depth_along: Option<DepthAlongName>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TableName {
+    /// A torus by Simpson's rule (2015)
+    #[value(name = "2")]
+    Torus,
+    /// A Bezier curve by Simpson's rule (2015)
+    #[value(name = "3")]
+    Bezier,
+    /// A beam in closed form, with and without hidden surfaces
+    #[value(name = "2010")]
+    Beam,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DepthAlongName {
+    /// The view ray: a distance from the eye
+    Ray,
+    /// The direction of view, as depth buffers have it
+    Axis,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -162,6 +190,7 @@ impl Overrides {
             && self.divisions.is_none()
             && self.tolerance.is_none()
             && self.sampling.is_none()
+            && self.depth.is_none()
     }
 
     /// Replaces what was typed.
@@ -179,6 +208,13 @@ impl Overrides {
                     limit = ImageSize::LIMIT
                 ),
             });
+        }
+        if let Some(file) = &self.depth {
+            let along = match self.depth_along {
+                Some(DepthAlongName::Axis) => DepthAlong::Axis,
+                Some(DepthAlongName::Ray) | None => DepthAlong::Ray,
+            };
+            scene.depth = Some(DepthImage::open(file, along)?);
         }
         let integration = &mut scene.integration;
         scene.image = self.size.unwrap_or(scene.image);

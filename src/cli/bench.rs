@@ -3,13 +3,16 @@
 use std::path::Path;
 use std::time::Duration;
 
-use energywave::bench::{DIVISIONS, RESOLUTIONS, Speed, Table, exact_cost, measure};
+use energywave::bench::{
+    DIVISIONS, PAPER_CPU_FPS, RESOLUTIONS, Speed, TABLE_2010, Table, exact_cost, measure,
+    single_threaded_fps,
+};
 use energywave::image::Output;
 use energywave::scene::{Method, Sampling};
 use energywave::{Device, DeviceType, Error, Renderer, Scene};
 use serde::Serialize;
 
-use super::args::BenchArguments;
+use super::args::{BenchArguments, TableName};
 use super::{Outcome, choose_device, note, print, print_json};
 
 /// A cell of a table.
@@ -25,6 +28,29 @@ struct Cell {
     kernel_ms: f64,
     frame: u32,
     device: String,
+}
+
+/// A cell of the table of 2010.
+#[derive(Serialize)]
+struct BeamCell {
+    table: u32,
+    field: &'static str,
+    resolution: u32,
+    depth: bool,
+    /// The closed form at every pixel, as in the paper.
+    fps: f64,
+    paper_fps: f64,
+    ratio: f64,
+    kernel_ms: f64,
+    frame: u32,
+    /// The same by tiles.
+    tiles_fps: f64,
+    device: String,
+    /// The last cell on the float64 reference, on one thread, and what the paper reports without a GPU.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    single_threaded_fps: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    paper_single_threaded_fps: Option<f64>,
 }
 
 /// A scene.
@@ -44,25 +70,25 @@ struct SceneSpeed {
 }
 
 pub fn run(arguments: &BenchArguments) -> Outcome {
-    match &arguments.scene {
-        Some(path) => bench_scene(arguments, path),
-        None => bench_tables(arguments),
+    if let Some(path) = &arguments.scene {
+        return bench_scene(arguments, path);
     }
-}
-
-fn bench_tables(arguments: &BenchArguments) -> Outcome {
     if !arguments.overrides.is_empty() {
         let message = "the tables have sizes, method and divisions of their own; give a scene to measure with others";
         return Err(Error::Unsupported(message.to_owned()).into());
     }
-    let tables = match arguments.table {
-        Some(2) => vec![Table::Torus],
-        Some(_) => vec![Table::Bezier],
-        None => vec![Table::Torus, Table::Bezier],
-    };
+    match arguments.table {
+        Some(TableName::Torus) => bench_tables(arguments, &[Table::Torus]),
+        Some(TableName::Bezier) => bench_tables(arguments, &[Table::Bezier]),
+        Some(TableName::Beam) => bench_table_2010(arguments),
+        None => bench_tables(arguments, &[Table::Torus, Table::Bezier]),
+    }
+}
+
+fn bench_tables(arguments: &BenchArguments, tables: &[Table]) -> Outcome {
     let (device, mut renderer) = prepare(arguments)?;
     let mut cells = Vec::new();
-    for table in tables {
+    for &table in tables {
         for (row, resolution) in RESOLUTIONS.into_iter().enumerate() {
             for (column, divisions) in DIVISIONS.into_iter().enumerate() {
                 let scene = table.scene(resolution, divisions);
@@ -93,6 +119,75 @@ fn bench_tables(arguments: &BenchArguments) -> Outcome {
         print_json(&cells)?;
     }
     Ok(())
+}
+
+fn bench_table_2010(arguments: &BenchArguments) -> Outcome {
+    let (device, mut renderer) = prepare(arguments)?;
+    let mut cells: Vec<BeamCell> = Vec::new();
+    for (number, known) in TABLE_2010.into_iter().enumerate() {
+        let mut scene = known.scene()?;
+        scene.integration.sampling = Some(Sampling::Tiles);
+        let by_tiles = measure(&mut renderer, &scene, time(arguments))?;
+        scene.integration.sampling = Some(Sampling::Pixels);
+        let speed = measure(&mut renderer, &scene, time(arguments))?;
+        let depth = if known.has_depth { "-depth" } else { "" };
+        let name = format!("beam-{}{depth}.exr", known.resolution);
+        save(arguments, &name, &speed, &scene)?;
+        let is_last = number + 1 == TABLE_2010.len();
+        let single_threaded_fps = is_last.then(|| single_threaded_fps(&scene)).transpose()?;
+        let cell = BeamCell {
+            table: 2010,
+            field: "beam",
+            resolution: known.resolution,
+            depth: known.has_depth,
+            fps: speed.fps,
+            paper_fps: known.paper_fps,
+            ratio: speed.fps / known.paper_fps,
+            kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
+            frame: speed.frame,
+            tiles_fps: by_tiles.fps,
+            device: device.name.clone(),
+            single_threaded_fps,
+            paper_single_threaded_fps: single_threaded_fps.map(|_| PAPER_CPU_FPS),
+        };
+        if !arguments.json {
+            print_beam_cell(&cell, number == 0)?;
+        }
+        cells.push(cell);
+    }
+    if arguments.json {
+        print_json(&cells)?;
+    }
+    Ok(())
+}
+
+fn print_beam_cell(cell: &BeamCell, is_first: bool) -> Outcome {
+    if is_first {
+        print(
+            "table field   resolution     depth       fps     paper   ratio  kernel ms  tiles fps\n",
+        )?;
+    }
+    print(&format!(
+        "{:>5} {:<8} {:>9} {:>9} {:>9.2} {:>9.2} {:>7.2} {:>10.3} {:>10.2}\n",
+        cell.table,
+        cell.field,
+        cell.resolution,
+        if cell.depth { "yes" } else { "no" },
+        cell.fps,
+        cell.paper_fps,
+        cell.ratio,
+        cell.kernel_ms,
+        cell.tiles_fps
+    ))?;
+    let Some(single) = cell.single_threaded_fps else {
+        return Ok(());
+    };
+    print(&format!(
+        "the last on the float64 reference, one thread: {single:.3} fps, {:.0} times slower; the paper without a GPU: \
+         {PAPER_CPU_FPS} fps, {:.0} times\n",
+        cell.fps / single,
+        cell.paper_fps / PAPER_CPU_FPS
+    ))
 }
 
 /// One row of the text table; a cell takes a second, so that each is printed at once.

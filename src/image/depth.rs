@@ -4,10 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use exr::image::{AnyChannel, FlatSamples, Layer};
-use exr::prelude::{AnyChannels, ReadChannels, ReadLayers, read};
+use exr::prelude::{
+    AnyChannels, Encoding, Image, LayerAttributes, ReadChannels, ReadLayers, WritableImage, read,
+};
 use serde::Deserialize;
 
 use crate::error::{Error, Result, SceneError};
+use crate::image::{Output, OutputFormat};
 use crate::scene::ImageSize;
 
 /// What a depth is the length of; it begins at the eye.
@@ -98,6 +101,32 @@ impl DepthImage {
         })
     }
 
+    /// Writes an OpenEXR image whose channel Z holds the depths.
+    ///
+    /// # Errors
+    /// [`Error::OutputFormat`] for another ending than `.exr`, [`Error::Output`] if the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        if OutputFormat::of(path)? != OutputFormat::Exr {
+            return Err(Error::OutputFormat(path.to_owned()));
+        }
+        let channel = AnyChannel::new("Z", FlatSamples::F32(self.values.to_vec()));
+        let layer = Layer::new(
+            (self.size.width as usize, self.size.height as usize),
+            LayerAttributes::default(),
+            Encoding::SMALL_LOSSLESS,
+            AnyChannels::sort([channel].into_iter().collect()),
+        );
+        let image = Image::from_layer(layer);
+        Output::create(path)?.write_with(|file| {
+            let write = image.write().non_parallel();
+            write.to_buffered(file).map_err(|error| match error {
+                exr::error::Error::Io(error) => error,
+                other => std::io::Error::other(other),
+            })
+        })
+    }
+
     /// Width and height in pixels.
     pub fn size(&self) -> ImageSize {
         self.size
@@ -152,7 +181,7 @@ fn depth_channel(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use exr::prelude::{Encoding, Image, LayerAttributes, SmallVec, WritableImage};
+    use exr::prelude::SmallVec;
 
     const SIZE: ImageSize = ImageSize {
         width: 3,
@@ -191,6 +220,18 @@ mod tests {
         assert!(unknown.contains("there are: a, b"), "{unknown}");
         let not_a_number = opened(&[("Z", f32::NAN)]).unwrap_err().to_string();
         assert!(not_a_number.contains("NaN at column 0, row 0"), "{not_a_number}");
+    }
+
+    #[test]
+    fn what_is_saved_is_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("depth.exr");
+        let values = vec![0.0, 1.5, f32::INFINITY, 4.0, 5.0, 1e30];
+        let image = DepthImage::new(SIZE, DepthAlong::Axis, values).unwrap();
+        image.save(&path).unwrap();
+        assert_eq!(DepthImage::open(&path, DepthAlong::Axis).unwrap(), image);
+        let png = image.save(folder.path().join("depth.png")).unwrap_err();
+        assert!(matches!(png, Error::OutputFormat(_)));
     }
 
     #[test]

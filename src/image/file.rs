@@ -106,8 +106,16 @@ impl Output {
     }
 
     fn finish(
-        mut self,
+        self,
         encode: impl FnOnce(&mut BufWriter<&mut File>) -> std::result::Result<(), ImageError>,
+    ) -> Result<()> {
+        self.write_with(|writer| encode(writer).map_err(|error| io::Error::other(reason(&error))))
+    }
+
+    /// Lets `encode` write the file and moves it to its place.
+    pub(super) fn write_with(
+        mut self,
+        encode: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
     ) -> Result<()> {
         let path = self.path;
         let fail = |reason: String| Error::Output {
@@ -115,7 +123,7 @@ impl Output {
             reason: format!("{reason}; nothing was written"),
         };
         let mut writer = BufWriter::new(self.file.as_file_mut());
-        encode(&mut writer).map_err(|error| fail(reason(&error)))?;
+        encode(&mut writer).map_err(|error| fail(error.to_string()))?;
         writer.flush().map_err(|error| fail(error.to_string()))?;
         drop(writer);
         self.file

@@ -36,7 +36,7 @@ macro_rules! device_structs {
 
 device_structs! {
     /// The pixel grid on the projection plane.
-    View [160] {
+    View [144] {
         first_pixel: [f32; 4] = 0,
         column_step: [f32; 4] = 16,
         row_step: [f32; 4] = 32,
@@ -55,10 +55,6 @@ device_structs! {
         near_plane: f32 = 132,
         near_plane_rest: f32 = 136,
         hides_all: f32 = 140,
-        hides_nothing: f32 = 144,
-        padding_0: f32 = 148,
-        padding_1: f32 = 152,
-        padding_2: f32 = 156,
     }
     /// One launch.
     Launch [64] {

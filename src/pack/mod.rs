@@ -9,7 +9,7 @@ use glam::DVec3;
 
 pub use rule::Rule;
 
-use crate::image::DepthAlong;
+use crate::image::{DepthAlong, DepthImage};
 use crate::ray::{Ray, ViewPlane};
 use crate::reference::simpson_nodes;
 use crate::scene::{Beam, Cylinder, Decay, Measure, Profile, Scene, Sphere, Torus};
@@ -124,24 +124,19 @@ pub fn view(plane: &ViewPlane, scene: &Scene) -> layout::View {
     }
 }
 
-/// What depths are lengths of, and which hide all of any ray, or nothing; a little less and more than float32 may say.
+/// What depths are lengths of, and which hide all of any ray; a little less than float32 may say.
 fn depth_limits(plane: &ViewPlane, scene: &Scene) -> layout::View {
     const MARGIN: f64 = 1e-5;
-    let view = view_of_rays(scene);
-    let Some(depth) = &scene.depth else {
-        return view;
-    };
-    // The corner pixel's is the longest way from the eye to the plane.
-    let (near_plane, farthest) = match depth.along() {
-        DepthAlong::Ray => (0.0, plane.first_pixel.length()),
-        DepthAlong::Axis => (plane.near, plane.near),
+    let along = scene.depth.as_ref().map(DepthImage::along);
+    let near_plane = match along {
+        Some(DepthAlong::Axis) => plane.near,
+        Some(DepthAlong::Ray) | None => 0.0,
     };
     layout::View {
         near_plane: near_plane as f32,
         near_plane_rest: rest(near_plane),
         hides_all: ((1.0 - MARGIN) * plane.near) as f32,
-        hides_nothing: ((1.0 + MARGIN) * (farthest + plane.ray_length)) as f32,
-        ..view
+        ..view_of_rays(scene)
     }
 }
 

@@ -1,10 +1,16 @@
-//! The paper's speed tables (Watanabe, Abe, Konno 2015, Tables 2 and 3), and the speed of any scene: whole frames, the
-//! image in host memory at the end of each, a new camera for every frame.
+//! The papers' speed tables (Watanabe, Abe, Konno 2015, Tables 2 and 3; Abe, Watanabe 2010), and the speed of any scene:
+//! whole frames, the image in host memory at the end of each, a new camera for every frame.
+
+mod occluders;
+mod table_2010;
 
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec3};
+
+pub use occluders::tetrahedra;
+pub use table_2010::{Cell2010, PAPER_CPU_FPS, TABLE_2010, camera_2010, single_threaded_fps};
 
 use crate::device::Device;
 use crate::error::{Error, Result};
