@@ -5,7 +5,9 @@
 
 // Where the ends of a tile's rays differ from what its nodes tell by more than this, as a parameter s, no source is put
 // to the test.
+#ifndef MOST_END_ERROR
 #define MOST_END_ERROR 1e-2f
+#endif
 
 typedef struct {
     bool is_dark;    // all of every ray is hidden

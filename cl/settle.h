@@ -35,8 +35,8 @@ INLINE bool JOIN(settle_, FIELD)(const TileTask *const task, const TileRays *con
 #ifdef DEPTH
         const floatv at_end = JOIN(FIELD, _at_end)(&rays->nodes[round], task->sources, index);
         const floatv light_at_end = at_end * decay_at(task->quadrature->decay, rays->nodes[round].end);
-        show(end_error * fabs(light_at_end) - MOST_ERROR(task->pass) * fabs(integral), first_ray(round),
-             memory->excess);
+        show(END_ERROR_WEIGHT * end_error * fabs(light_at_end) - MOST_ERROR(task->pass) * fabs(integral),
+             first_ray(round), memory->excess);
 #endif
     }
     meet();

@@ -38,6 +38,11 @@ bool all_see_one_part(__local float (*const seen)[TILE_RAYS]) {
 #define MOST_ERROR(pass) ((pass)->most_error)
 #endif
 
+// How much the light at an end counts that differs from what the nodes tell; a test of the test gives up on it.
+#ifndef END_ERROR_WEIGHT
+#define END_ERROR_WEIGHT 1.0f
+#endif
+
 // The largest of the highest two Chebyshev coefficients of four rows of values at once: of an even and an odd function.
 typedef struct {
     float even, odd;

@@ -9,9 +9,7 @@ use crate::error::{Error, Result};
 use crate::ray::Ray;
 use crate::reference;
 use crate::renderer::Renderer;
-use crate::scene::{
-    Beam, Camera, Curve, Cylinder, Decay, Method, Profile, Scene, Sphere, Torus,
-};
+use crate::scene::{Beam, Camera, Curve, Cylinder, Decay, Method, Profile, Scene, Sphere, Torus};
 
 /// The rays that every copy of the crate carries.
 const BUILT_IN: &str = include_str!("../tests/data/rays.json");

@@ -30,6 +30,11 @@ fn through_a_core(kind: Kind) -> Scene {
         Kind::Cylinder => scene
             .cylinders
             .push(common::cylinder([0.0; 3], [1.0, 0.2, 0.5])),
+        Kind::Beam => scene.beams.push(common::beam(
+            [-0.4, -0.08, -0.2],
+            [1.0, 0.2, 0.5],
+            Some(0.3),
+        )),
         Kind::Torus => scene
             .tori
             .push(common::torus([0.0, 1.0, 0.0], [0.0, 0.3, 1.0], 1.0)),

@@ -11,19 +11,27 @@ use glam::{DMat3, DVec3};
 /// The same light summed from float32 coordinates that round differently.
 const ROUNDING: f64 = 2e-4;
 
+fn scale_light(scene: &mut Scene, factor: f64) {
+    let of_spheres = scene.spheres.iter_mut().map(|s| &mut s.coefficient);
+    let of_cylinders = scene.cylinders.iter_mut().map(|s| &mut s.coefficient);
+    let of_tori = scene.tori.iter_mut().map(|s| &mut s.coefficient);
+    let of_curves = scene.curves.iter_mut().map(|s| &mut s.coefficient);
+    let of_beams = scene.beams.iter_mut().flat_map(|b| {
+        let parts = [&mut b.coefficient, &mut b.sphere_coefficient];
+        parts.into_iter().chain(&mut b.cap_coefficient)
+    });
+    let all = of_spheres.chain(of_cylinders).chain(of_tori);
+    let all = all.chain(of_curves).chain(of_beams);
+    all.for_each(|coefficient| *coefficient *= factor);
+}
+
 #[test]
 fn light_is_linear_in_the_coefficients_and_adds_up() {
     let mut renderer = renderer(common::device().lanes, "");
     let scene = full_scene(31, 17);
     let image = renderer.render(&scene).unwrap();
     let mut twice = scene.clone();
-    twice.spheres.iter_mut().for_each(|s| s.coefficient *= 2.0);
-    twice
-        .cylinders
-        .iter_mut()
-        .for_each(|s| s.coefficient *= 2.0);
-    twice.tori.iter_mut().for_each(|s| s.coefficient *= 2.0);
-    twice.curves.iter_mut().for_each(|s| s.coefficient *= 2.0);
+    scale_light(&mut twice, 2.0);
     let doubled = renderer.render(&twice).unwrap();
     let pairs = doubled.as_slice().chunks(4).zip(image.as_slice().chunks(4));
     assert!(
@@ -36,7 +44,7 @@ fn light_is_linear_in_the_coefficients_and_adds_up() {
     let mut part = scene.clone();
     (part.tori, part.curves) = (Vec::new(), Vec::new());
     let mut rest = scene.clone();
-    (rest.spheres, rest.cylinders) = (Vec::new(), Vec::new());
+    (rest.spheres, rest.cylinders, rest.beams) = (Vec::new(), Vec::new(), Vec::new());
     for image in [
         renderer.render(&part).unwrap(),
         renderer.render(&rest).unwrap(),
@@ -77,6 +85,9 @@ fn mapped(scene: &Scene, map: impl Fn(DVec3) -> DVec3) -> Scene {
     }
     for cylinder in &mut scene.cylinders {
         (cylinder.point, cylinder.direction) = (map(cylinder.point), map(cylinder.direction));
+    }
+    for beam in &mut scene.beams {
+        (beam.tip, beam.direction) = (map(beam.tip), map(beam.direction));
     }
     for torus in &mut scene.tori {
         (torus.center, torus.axis) = (map(torus.center), map(torus.axis));
@@ -121,19 +132,9 @@ fn a_moved_turned_and_scaled_scene_gives_the_same_image() {
         let mut scaled = mapped(&scene, |v| v * scale);
         scaled.camera.near *= scale;
         scaled.tori.iter_mut().for_each(|t| t.major_radius *= scale);
-        scaled
-            .spheres
-            .iter_mut()
-            .for_each(|s| s.coefficient *= scale);
-        scaled
-            .cylinders
-            .iter_mut()
-            .for_each(|s| s.coefficient *= scale);
-        scaled.tori.iter_mut().for_each(|s| s.coefficient *= scale);
-        scaled
-            .curves
-            .iter_mut()
-            .for_each(|s| s.coefficient *= scale);
+        let tapers = scaled.beams.iter_mut().flat_map(|b| &mut b.taper_length);
+        tapers.for_each(|length| *length *= scale);
+        scale_light(&mut scaled, scale);
         let found = difference(&renderer.render(&scaled).unwrap(), &image);
         assert!(found.max < ROUNDING, "{scale}: {found:?}");
     }
@@ -143,6 +144,9 @@ fn a_moved_turned_and_scaled_scene_gives_the_same_image() {
     moved.camera.up -= far;
     for (cylinder, original) in moved.cylinders.iter_mut().zip(&scene.cylinders) {
         cylinder.direction = original.direction;
+    }
+    for (beam, original) in moved.beams.iter_mut().zip(&scene.beams) {
+        beam.direction = original.direction;
     }
     for (torus, original) in moved.tori.iter_mut().zip(&scene.tori) {
         torus.axis = original.axis;
@@ -190,6 +194,10 @@ fn wild_scene(random: &mut fastrand::Rng) -> Scene {
         let mut cylinder = common::cylinder([0.0; 3], [1.0; 3]);
         (cylinder.point, cylinder.direction) = (place(random), place(random));
         scene.cylinders.push(cylinder);
+        let taper = random.bool().then(|| magnitude(random));
+        let mut beam = common::beam([0.0; 3], [1.0; 3], taper);
+        (beam.tip, beam.direction) = (place(random), place(random));
+        scene.beams.push(beam);
         let mut torus = common::torus([0.0; 3], [1.0; 3], magnitude(random));
         (torus.center, torus.axis) = (place(random), place(random));
         scene.tori.push(torus);
@@ -207,6 +215,13 @@ fn every_pixel_of_every_valid_scene_is_finite() {
     let mut valid = 0;
     for seed in 0..3000 {
         let scene = wild_scene(&mut fastrand::Rng::with_seed(seed));
+        if scene.validate().is_err() {
+            continue;
+        }
+        let scene = match seed % 3 {
+            0 => common::squared(&scene),
+            _ => scene,
+        };
         if scene.validate().is_err() {
             continue;
         }

@@ -9,10 +9,7 @@ use crate::ray::ViewPlane;
 use crate::scene::{Camera, ImageSize};
 
 /// Where the two tetrahedra stand (2010), and how far their corners are from there, which is not given.
-const TETRAHEDRA: [(DVec3, f64); 2] = [
-    (DVec3::ZERO, 80.0),
-    (DVec3::new(10.0, 0.0, 250.0), 18.0),
-];
+const TETRAHEDRA: [(DVec3, f64); 2] = [(DVec3::ZERO, 80.0), (DVec3::new(10.0, 0.0, 250.0), 18.0)];
 
 /// An apex over a base, at distance 1 from the middle.
 const CORNERS: [DVec3; 4] = [
@@ -83,6 +80,10 @@ mod tests {
         assert_eq!(at(0, 0), f32::INFINITY);
         // The near one's apex is seen 18 above its middle, 100 from the eye.
         let apex = |row| at(60, row);
-        assert!(apex(31) > 120.0 && (apex(34) - 101.0).abs() < 3.0, "{}", apex(34));
+        assert!(
+            apex(31) > 120.0 && (apex(34) - 101.0).abs() < 3.0,
+            "{}",
+            apex(34)
+        );
     }
 }

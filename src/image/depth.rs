@@ -156,7 +156,10 @@ fn depth_channel(
 ) -> std::result::Result<(&FlatLayer, &AnyChannel<FlatSamples>), String> {
     let of_layer = |layer| {
         let FlatLayer { channel_data, .. }: &FlatLayer = layer;
-        channel_data.list.iter().map(move |channel| (layer, channel))
+        channel_data
+            .list
+            .iter()
+            .map(move |channel| (layer, channel))
     };
     let all: Vec<_> = layers.iter().flat_map(of_layer).collect();
     // Renderers put the name of a view layer or a pass before a channel's own.
@@ -189,9 +192,8 @@ mod tests {
     };
 
     fn write(path: &Path, channels: &[(&str, f32)]) {
-        let channel = |(name, value): &(&str, f32)| {
-            AnyChannel::new(*name, FlatSamples::F32(vec![*value; 6]))
-        };
+        let channel =
+            |(name, value): &(&str, f32)| AnyChannel::new(*name, FlatSamples::F32(vec![*value; 6]));
         let list: SmallVec<[_; 4]> = channels.iter().map(channel).collect();
         let layer = Layer::new(
             (3, 2),
@@ -219,7 +221,10 @@ mod tests {
         let unknown = opened(&[("a", 6.0), ("b", 7.0)]).unwrap_err().to_string();
         assert!(unknown.contains("there are: a, b"), "{unknown}");
         let not_a_number = opened(&[("Z", f32::NAN)]).unwrap_err().to_string();
-        assert!(not_a_number.contains("NaN at column 0, row 0"), "{not_a_number}");
+        assert!(
+            not_a_number.contains("NaN at column 0, row 0"),
+            "{not_a_number}"
+        );
     }
 
     #[test]

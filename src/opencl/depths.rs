@@ -31,7 +31,9 @@ impl Depths {
             Some(buffer) if buffer.len() >= len => buffer,
             _ => DeviceBuffer::new(compute, "the depth image", len)?,
         };
-        self.buffer.insert(buffer).write(compute, image.as_slice())?;
+        self.buffer
+            .insert(buffer)
+            .write(compute, image.as_slice())?;
         self.image = Some(image.clone());
         Ok(())
     }

@@ -100,8 +100,8 @@ impl Sources {
         let open = (self.spheres.iter().map(|s| s.is_square))
             .chain(self.cylinders.iter().map(|c| c.is_square))
             .chain(self.beams.iter().map(|b| b.is_square));
-        let closed = (self.tori.iter().map(|t| t.is_square))
-            .chain(self.curves.iter().map(|c| c.is_square));
+        let closed =
+            (self.tori.iter().map(|t| t.is_square)).chain(self.curves.iter().map(|c| c.is_square));
         open.chain(closed).any(|is_square| is_square == 1)
     }
 }

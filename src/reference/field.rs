@@ -81,7 +81,11 @@ impl Field {
             Self::BeamLine(beam) => {
                 breaks.push(nearest_to_line(ray, beam.tip, beam.direction));
                 for behind in [Some(0.0), beam.taper_length].into_iter().flatten() {
-                    breaks.push(crossing(ray, beam.tip - beam.direction * behind, beam.direction));
+                    breaks.push(crossing(
+                        ray,
+                        beam.tip - beam.direction * behind,
+                        beam.direction,
+                    ));
                 }
             }
             Self::BeamCap(beam) => {

@@ -66,7 +66,9 @@ pub fn sources(scene: &Scene) -> Vec<Source> {
             (Field::BeamCap(unit), b.cap()),
             (Field::Sphere(sphere), b.sphere_coefficient),
         ];
-        let lit = parts.into_iter().filter(|(_, coefficient)| *coefficient != 0.0);
+        let lit = parts
+            .into_iter()
+            .filter(|(_, coefficient)| *coefficient != 0.0);
         lit.map(|(field, coefficient)| source(field, b.profile, coefficient, b.color))
             .collect::<Vec<_>>()
     });
@@ -121,13 +123,7 @@ pub fn exact(source: &Source, ray: &Ray, integrand: &Integrand, end: f64) -> f64
 }
 
 /// The same integral by the composite Simpson rule with an even number of equal divisions (2015, eq. 23).
-pub fn simpson(
-    source: &Source,
-    ray: &Ray,
-    integrand: &Integrand,
-    end: f64,
-    divisions: u32,
-) -> f64 {
+pub fn simpson(source: &Source, ray: &Ray, integrand: &Integrand, end: f64, divisions: u32) -> f64 {
     simpson_nodes(divisions)
         .map(|(s, weight)| end * weight * integrand.at(source, ray, end * s))
         .sum()

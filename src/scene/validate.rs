@@ -53,12 +53,7 @@ impl Scene {
         for (i, sphere) in self.spheres.iter().enumerate() {
             let key = |name| format!("sphere[{i}].{name}");
             vector(&key("center"), sphere.center)?;
-            light(
-                &key,
-                sphere.coefficient,
-                sphere.color,
-                most(sphere.profile),
-            )?;
+            light(&key, sphere.coefficient, sphere.color, most(sphere.profile))?;
         }
         for (i, cylinder) in self.cylinders.iter().enumerate() {
             let key = |name| format!("cylinder[{i}].{name}");

@@ -5,9 +5,12 @@
 pub mod program;
 pub mod random;
 
+use energywave::image::{DepthAlong, DepthImage};
 use energywave::image::{Difference, compare};
 use energywave::opencl::{Compute, OpenClDevice, discover};
-use energywave::scene::{Camera, Curve, Cylinder, Decay, ImageSize, Method, Sphere, Torus};
+use energywave::scene::{
+    Beam, Camera, Curve, Cylinder, Decay, ImageSize, Method, Profile, Sphere, Torus,
+};
 use energywave::{BuildOptions, Device, DeviceType, RadianceImage, Renderer, Scene};
 use glam::DVec3;
 
@@ -40,7 +43,7 @@ pub fn compute() -> Compute {
 }
 
 /// What the kernels need to hold every kind of source.
-pub const ALL_KINDS: &str = "-D SPHERES -D CYLINDERS -D TORI -D CURVES";
+pub const ALL_KINDS: &str = "-D SPHERES -D CYLINDERS -D BEAMS -D TORI -D CURVES";
 
 pub fn options(lanes: u32, extra: &str) -> BuildOptions {
     BuildOptions {
@@ -84,6 +87,19 @@ pub fn cylinder(point: [f64; 3], direction: [f64; 3]) -> Cylinder {
     }
 }
 
+/// With a cap and a sphere of its own, or with a taper.
+pub fn beam(tip: [f64; 3], direction: [f64; 3], taper_length: Option<f64>) -> Beam {
+    Beam {
+        tip: tip.into(),
+        coefficient: 1.4,
+        cap_coefficient: taper_length.is_none().then_some(0.9),
+        sphere_coefficient: 0.3,
+        taper_length,
+        color: DVec3::new(0.8, 0.3, 0.1),
+        ..Beam::new(direction.into())
+    }
+}
+
 pub fn torus(center: [f64; 3], axis: [f64; 3], major_radius: f64) -> Torus {
     Torus {
         center: center.into(),
@@ -122,6 +138,9 @@ pub fn full_scene(width: u32, height: u32) -> Scene {
     scene
         .cylinders
         .push(cylinder([0.0, 0.6, 0.2], [1.0, 0.2, 0.1]));
+    let (right, up) = ([1.0, 0.1, 0.2], [-0.3, 0.2, 0.9]);
+    scene.beams.push(beam([-0.3, 0.2, 0.4], right, None));
+    scene.beams.push(beam([0.5, 0.4, -0.2], up, Some(0.6)));
     scene
         .tori
         .push(torus([0.1, 0.0, 0.0], [0.1, 0.2, 2.0], 0.9));
@@ -134,6 +153,41 @@ pub fn full_scene(width: u32, height: u32) -> Scene {
         scene.curves.push(curve(*shape, None));
     }
     scene
+}
+
+/// The scene with fields that fall off with the squared distance.
+pub fn squared(scene: &Scene) -> Scene {
+    const SQUARE: Profile = Profile::InverseSquare;
+    let mut scene = scene.clone();
+    scene.spheres.iter_mut().for_each(|s| s.profile = SQUARE);
+    scene.cylinders.iter_mut().for_each(|s| s.profile = SQUARE);
+    scene.beams.iter_mut().for_each(|s| s.profile = SQUARE);
+    scene.tori.iter_mut().for_each(|s| s.profile = SQUARE);
+    scene.curves.iter_mut().for_each(|s| s.profile = SQUARE);
+    scene
+}
+
+/// A depth image of another size, without interpolation.
+pub fn resized(depth: &DepthImage, size: ImageSize) -> DepthImage {
+    let from = depth.size();
+    let value = |row: u32, column: u32| {
+        let row = row * from.height / size.height;
+        let column = column * from.width / size.width;
+        depth.as_slice()[(row * from.width + column) as usize]
+    };
+    let rows = (0..size.height).flat_map(|row| (0..size.width).map(move |column| (row, column)));
+    let values = rows.map(|(row, column)| value(row, column)).collect();
+    DepthImage::new(size, depth.along(), values).unwrap()
+}
+
+/// A depth for every pixel of a scene, from its column and row.
+pub fn depths(scene: &Scene, along: DepthAlong, value: impl Fn(u32, u32) -> f64) -> DepthImage {
+    let size = scene.image;
+    let places = (0..size.height).flat_map(|row| (0..size.width).map(move |column| (column, row)));
+    let values = places
+        .map(|(column, row)| value(column, row) as f32)
+        .collect();
+    DepthImage::new(size, along, values).unwrap()
 }
 
 pub fn difference(image: &RadianceImage, reference: &RadianceImage) -> Difference {
@@ -159,10 +213,11 @@ pub fn figures(size: u32, method: Method) -> Vec<(String, Scene)> {
             let mut scene = Scene::from_file(&path).unwrap();
             scene.integration.method = method;
             (scene.image.width, scene.image.height) = (size, size);
+            scene.depth = scene.depth.map(|depth| resized(&depth, scene.image));
             let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
             figures.push((name, scene));
         }
     }
-    assert!(figures.len() >= 12, "only {} scenes", figures.len());
+    assert!(figures.len() >= 27, "only {} scenes", figures.len());
     figures
 }

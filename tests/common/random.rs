@@ -2,7 +2,7 @@
 
 use energywave::Scene;
 use energywave::scene::{
-    Camera, Curve, Cylinder, Decay, ImageSize, Measure, Method, Sphere, Torus,
+    Beam, Camera, Curve, Cylinder, Decay, ImageSize, Measure, Method, Sphere, Torus,
 };
 use fastrand::Rng;
 use glam::DVec3;
@@ -12,11 +12,18 @@ use glam::DVec3;
 pub enum Kind {
     Sphere,
     Cylinder,
+    Beam,
     Torus,
     Curve,
 }
 
-pub const KINDS: [Kind; 4] = [Kind::Sphere, Kind::Cylinder, Kind::Torus, Kind::Curve];
+pub const KINDS: [Kind; 5] = [
+    Kind::Sphere,
+    Kind::Cylinder,
+    Kind::Beam,
+    Kind::Torus,
+    Kind::Curve,
+];
 
 /// Between `from` and `to`, evenly in the logarithm.
 fn spread(random: &mut Rng, from: f64, to: f64) -> f64 {
@@ -73,6 +80,18 @@ pub fn add_source(random: &mut Rng, kind: Kind, scene: &mut Scene) {
             color,
             ..Cylinder::new(point(random, 1.0))
         }),
+        Kind::Beam => {
+            let has_taper = random.bool();
+            scene.beams.push(Beam {
+                tip: point(random, 1.0),
+                coefficient,
+                color,
+                cap_coefficient: (!has_taper && random.bool()).then(|| spread(random, 0.1, 5.0)),
+                sphere_coefficient: if random.bool() { random.f64() } else { 0.0 },
+                taper_length: has_taper.then(|| spread(random, 0.01, 3.0)),
+                ..Beam::new(point(random, 1.0))
+            });
+        }
         Kind::Torus => scene.tori.push(Torus {
             center: point(random, 0.5),
             axis: point(random, 1.0),

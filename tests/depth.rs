@@ -1,0 +1,354 @@
+//! Hidden surfaces: an occluded image is the image of rays cut by hand, by both methods and both samplings, with every
+//! kind of source, and its edges are exact to the pixel.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+
+use common::random::{KINDS, random_scene, scene_of};
+use common::{LANE_WIDTHS, depths, difference, meets, renderer};
+use energywave::image::{DepthAlong, compare};
+use energywave::ray::{Ray, ViewPlane};
+use energywave::scene::{Decay, ImageSize, Measure, Method, Sampling};
+use energywave::{RadianceImage, Renderer, Scene, reference};
+use glam::DVec3;
+
+/// Two computations in float32 of the same integral.
+const CUT_BY_HAND: f64 = 1e-5;
+
+/// Simpson's rule may have a sample next to a core, whose distance two rays with other coordinates round differently: so
+/// far off, and so many pixels in a thousand beyond the other limit.
+const CLOSE_SAMPLE: f64 = 1e-4;
+const CLOSE_SAMPLES: usize = 10;
+
+const WAYS: [DepthAlong; 2] = [DepthAlong::Ray, DepthAlong::Axis];
+
+fn plane_of(scene: &Scene) -> ViewPlane {
+    ViewPlane::new(&scene.camera, scene.image)
+}
+
+/// The depths at which the rays of a scene end at these parameters s.
+fn with_ends(scene: &Scene, along: DepthAlong, end: impl Fn(u32, u32) -> f64) -> Scene {
+    let plane = plane_of(scene);
+    let depth = depths(scene, along, |column, row| {
+        let to_plane = plane.ray(column, row).origin.distance(plane.eye);
+        let distance = (to_plane + end(column, row) * plane.ray_length).max(0.0);
+        match along {
+            DepthAlong::Ray => distance,
+            DepthAlong::Axis => distance * plane.near / to_plane,
+        }
+    });
+    let mut scene = scene.clone();
+    scene.depth = Some(depth);
+    scene
+}
+
+/// An integral over s in [0,g] is g times that along the ray that ends there, whose decay is alpha / g^2 and beta / g; the
+/// ray is cut where the depth says that it ends, in float64.
+fn cut_by_hand(renderer: &mut Renderer, scene: &Scene) -> RadianceImage {
+    let plane = plane_of(scene);
+    let depth = scene.depth.as_ref().unwrap();
+    let mut image = RadianceImage::new(scene.image).unwrap();
+    let width = scene.image.width as usize;
+    for (index, pixel) in image.as_mut_slice().chunks_exact_mut(4).enumerate() {
+        let ray = plane.ray((index % width) as u32, (index / width) as u32);
+        let to_plane = ray.origin.distance(plane.eye);
+        let distance = f64::from(depth.as_slice()[index])
+            * match depth.along() {
+                DepthAlong::Ray => 1.0,
+                DepthAlong::Axis => to_plane / plane.near,
+            };
+        let end = ((distance - to_plane) / plane.ray_length).clamp(0.0, 1.0);
+        if end == 0.0 {
+            continue;
+        }
+        let mut scene = scene.clone();
+        scene.decay = scene.decay.map(|decay| Decay {
+            alpha: decay.alpha / (end * end),
+            beta: decay.beta / end,
+        });
+        let measure = match scene.integration.measure {
+            Measure::Parameter => end,
+            Measure::Length => end * plane.ray_length,
+        };
+        let cut = Ray::between(ray.origin, ray.at(end));
+        let light = renderer.trace(&scene, &[cut]).unwrap()[0];
+        for (value, light) in pixel.iter_mut().zip(light) {
+            *value = (light * measure) as f32;
+        }
+    }
+    image
+}
+
+/// One source of a kind, the rays cut anywhere, some not at all and some all.
+fn cut_scene(index: usize, method: Method, along: DepthAlong) -> Scene {
+    let mut scene = scene_of(KINDS[index], 40 + index as u64, 20);
+    if index % 2 == 1 {
+        scene = common::squared(&scene);
+    }
+    scene.integration.method = method;
+    scene.integration.tolerance = 1e-7;
+    scene.integration.sampling = (method == Method::Exact).then_some(Sampling::Pixels);
+    let mut random = fastrand::Rng::with_seed(index as u64);
+    let ends: Vec<f64> = (0..400).map(|_| 1.4 * random.f64() - 0.2).collect();
+    with_ends(&scene, along, |column, row| {
+        ends[(20 * row + column) as usize]
+    })
+}
+
+#[test]
+fn an_occluded_image_is_that_of_rays_cut_by_hand() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for method in [Method::Simpson, Method::Exact] {
+        for along in WAYS {
+            for (index, kind) in KINDS.iter().enumerate() {
+                let scene = cut_scene(index, method, along);
+                let image = renderer.render(&scene).unwrap();
+                let expected = cut_by_hand(&mut renderer, &scene);
+                let found = difference(&image, &expected);
+                let what = format!("{kind:?} {method:?} {along:?}: {found:?}");
+                if method == Method::Exact {
+                    assert!(found.max <= CUT_BY_HAND, "{what}");
+                    continue;
+                }
+                assert!(found.max <= CLOSE_SAMPLE, "{what}");
+                let pairs = image.as_slice().iter().zip(expected.as_slice());
+                let is_off = |(a, b): &(&f32, &f32)| {
+                    (f64::from(**a) - f64::from(**b)).abs() > CUT_BY_HAND * f64::from(b.abs())
+                };
+                let off = pairs.filter(is_off).count();
+                assert!(
+                    1000 * off <= CLOSE_SAMPLES * 4 * 400,
+                    "{what}: {off} values"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn depths_off_by_a_thousandth_fail_the_same_comparison() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for (index, kind) in KINDS.iter().enumerate() {
+        let scene = cut_scene(index, Method::Exact, DepthAlong::Ray);
+        let expected = cut_by_hand(&mut renderer, &scene);
+        let depth = scene.depth.as_ref().unwrap().as_slice();
+        let mut off = scene.clone();
+        off.depth = Some(depths(&scene, DepthAlong::Ray, |column, row| {
+            1.001 * f64::from(depth[(20 * row + column) as usize])
+        }));
+        let found = difference(&renderer.render(&off).unwrap(), &expected);
+        assert!(found.max > CUT_BY_HAND, "{kind:?}: {found:?}");
+    }
+}
+
+/// Distances, from the eye, of what a scene holds besides light.
+type Occluder = fn(DVec3, &Scene) -> f64;
+
+fn to_ball(direction: DVec3, scene: &Scene, center: DVec3, radius: f64) -> f64 {
+    let from_eye = center - scene.camera.eye;
+    let ahead = from_eye.dot(direction);
+    let left = radius * radius - from_eye.cross(direction).length_squared();
+    if left > 0.0 && ahead > left.sqrt() {
+        ahead - left.sqrt()
+    } else {
+        f64::INFINITY
+    }
+}
+
+fn to_plane(direction: DVec3, scene: &Scene, point: DVec3, normal: DVec3) -> f64 {
+    let distance = (point - scene.camera.eye).dot(normal) / direction.dot(normal);
+    if distance > 0.0 {
+        distance
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// What a tile's nodes cannot see, or may see too well.
+const OCCLUDERS: [(&str, Occluder); 7] = [
+    ("a ball", |d, s| {
+        to_ball(d, s, DVec3::new(0.2, -0.3, 0.1), 0.5)
+    }),
+    ("a ball of two pixels", |d, s| {
+        to_ball(d, s, DVec3::new(0.3, -0.4, 0.2), 0.02)
+    }),
+    ("a wall through the cores", |d, s| {
+        to_plane(d, s, DVec3::ZERO, DVec3::new(0.1, 1.0, 0.2))
+    }),
+    ("a floor up to the horizon", |d, s| {
+        to_plane(d, s, DVec3::new(0.0, 0.0, -0.8), DVec3::Z)
+    }),
+    ("a wall at the projection plane", |_, s| {
+        1.02 * s.camera.near
+    }),
+    ("a wall and a hole in it", |d, s| {
+        let plane = to_plane(d, s, DVec3::new(0.0, -0.5, 0.0), DVec3::Y);
+        let ball = to_ball(d, s, DVec3::new(0.4, -0.5, 0.3), 0.2);
+        if ball.is_finite() {
+            f64::INFINITY
+        } else {
+            plane
+        }
+    }),
+    ("waves on a wall", |d, s| {
+        let plane = to_plane(d, s, DVec3::ZERO, DVec3::Y);
+        plane * (1.0 + 0.02 * (80.0 * d.x).sin())
+    }),
+];
+
+/// No multiple of any tile.
+const SIZE: ImageSize = ImageSize {
+    width: 130,
+    height: 75,
+};
+
+fn occluded(scene: &Scene, occluder: Occluder) -> Scene {
+    let plane = plane_of(scene);
+    let mut scene = scene.clone();
+    scene.depth = Some(depths(&scene, DepthAlong::Ray, |column, row| {
+        let direction = plane.ray(column, row).span.normalize();
+        occluder(direction, &scene)
+    }));
+    scene
+}
+
+/// A ring, a beam, a curve and a point behind all occluders.
+fn lit_scene() -> Scene {
+    let mut scene = common::empty_scene(SIZE.width, SIZE.height);
+    scene.integration.method = Method::Exact;
+    scene
+        .tori
+        .push(common::torus([0.0; 3], [0.1, 0.2, 1.0], 0.8));
+    scene
+        .beams
+        .push(common::beam([-0.5, 0.1, 0.2], [1.0, 0.1, 0.2], None));
+    let arch = common::CURVE_SHAPES[0];
+    scene.curves.push(common::curve(arch, None));
+    scene.spheres.push(common::sphere([0.4, 0.9, 0.6], 1.0));
+    scene
+}
+
+#[test]
+fn edges_are_exact_to_the_pixel_by_pixels_and_by_tiles() {
+    let mut sharp = renderer(common::device().lanes, "");
+    let mut spoiled = renderer(
+        common::device().lanes,
+        "-DMOST_END_ERROR=1e30f -DEND_ERROR_WEIGHT=0.0f -DMOST_ERROR(pass)=1e30f",
+    );
+    let mut blurred = 0;
+    for (name, occluder) in OCCLUDERS {
+        let scene = occluded(&lit_scene(), occluder);
+        let expected = reference::render(&scene).unwrap();
+        for tolerance in [1e-2, 1e-3, 1e-4] {
+            let mut scene = scene.clone();
+            scene.integration.tolerance = tolerance;
+            for sampling in [Sampling::Pixels, Sampling::Tiles] {
+                scene.integration.sampling = Some(sampling);
+                let found = difference(&sharp.render(&scene).unwrap(), &expected);
+                assert!(
+                    meets(&found, tolerance),
+                    "{name} by {sampling:?} at {tolerance:e}: {found:?}"
+                );
+            }
+        }
+        let found = difference(&spoiled.render(&scene).unwrap(), &expected);
+        blurred += usize::from(!meets(&found, 1e-3));
+    }
+    assert!(
+        blurred >= 4,
+        "without a look at every depth only {blurred} of 7 images suffer"
+    );
+}
+
+#[test]
+fn random_scenes_with_walls_and_poles_meet_the_tolerance() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for seed in 0..24 {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let mut scene = random_scene(seed, 70);
+        let tilt = DVec3::from([0; 3].map(|_| 0.6 * random.f64() - 0.3));
+        let (far, pole) = (0.2 + 0.8 * random.f64(), random.u32(0..70));
+        scene = with_ends(&scene, WAYS[seed as usize % 2], |column, row| {
+            let (x, y) = (f64::from(column) / 70.0, f64::from(row) / 70.0);
+            let wall = far + tilt.x * x + tilt.y * y + tilt.z * x * y;
+            match wall {
+                _ if column == pole => 0.1,
+                // An end of 0 is not the same in float32.
+                wall if wall < 1e-3 => -0.1,
+                wall => wall,
+            }
+        });
+        let expected = reference::render(&scene).unwrap();
+        let image = renderer.render(&scene).unwrap();
+        let found = difference(&image, &expected);
+        assert!(meets(&found, 1e-3), "seed {seed}: {found:?}");
+    }
+}
+
+#[test]
+fn every_lane_width_sees_the_same_surfaces() {
+    let (_, ball) = OCCLUDERS[0];
+    let scene = occluded(&lit_scene(), ball);
+    let expected = reference::render(&scene).unwrap();
+    for lanes in LANE_WIDTHS {
+        for method in [Method::Simpson, Method::Exact] {
+            let mut scene = scene.clone();
+            scene.integration.method = method;
+            scene.integration.divisions = 64;
+            let simpson = || reference::render_simpson(&scene).unwrap();
+            let expected = match method {
+                Method::Simpson => &simpson(),
+                Method::Exact => &expected,
+            };
+            let found = difference(&renderer(lanes, "").render(&scene).unwrap(), expected);
+            assert!(meets(&found, 1e-3), "{lanes} lanes, {method:?}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_renderer_takes_depths_of_other_frames_and_sizes_for_none_of_its_own() {
+    let (_, ball) = OCCLUDERS[0];
+    let (_, wall) = OCCLUDERS[2];
+    let open = lit_scene();
+    let mut small = lit_scene();
+    small.image = ImageSize {
+        width: 31,
+        height: 17,
+    };
+    let scenes = [
+        occluded(&open, ball),
+        occluded(&open, wall),
+        occluded(&small, ball),
+        open.clone(),
+        occluded(&open, ball),
+    ];
+    let alone = scenes
+        .each_ref()
+        .map(|scene| renderer(common::device().lanes, "").render(scene).unwrap());
+    let mut renderer = renderer(common::device().lanes, "");
+    for (scene, expected) in scenes.iter().zip(&alone) {
+        assert_eq!(renderer.render(scene).unwrap(), *expected);
+    }
+    assert_eq!(alone[0], alone[4]);
+    assert!(compare(&alone[0], &alone[1]).unwrap().max > 0.1);
+}
+
+#[test]
+fn a_depth_beyond_the_rays_hides_nothing_and_one_before_them_everything() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for sampling in [Sampling::Pixels, Sampling::Tiles] {
+        let mut scene = lit_scene();
+        scene.integration.sampling = Some(sampling);
+        let open = renderer.render(&scene).unwrap();
+        for along in WAYS {
+            let mut hidden = scene.clone();
+            hidden.depth = Some(depths(&scene, along, |_, _| f64::INFINITY));
+            assert_eq!(renderer.render(&hidden).unwrap(), open);
+            hidden.depth = Some(depths(&scene, along, |_, _| 0.9 * scene.camera.near));
+            let image = renderer.render(&hidden).unwrap();
+            let mut pixels = image.as_slice().chunks(4);
+            assert!(pixels.all(|pixel| pixel == [0.0, 0.0, 0.0, 1.0]));
+        }
+    }
+}
