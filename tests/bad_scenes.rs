@@ -76,6 +76,57 @@ const BAD: &[(&str, &str, &str)] = &[
         "zero vector",
     ),
     (
+        "[[beam]]\ndirection = [0.0, 0.0, 0.0]\n",
+        "5:13: beam[0].direction",
+        "zero vector",
+    ),
+    (
+        "[[beam]]\ntip = [0.0, 0.0, 0.0]\n",
+        "4:1: beam[0].direction",
+        "required, but missing",
+    ),
+    (
+        "[[beam]]\ndirection = [0.0, 0.0, 1.0]\ntaper_length = -0.5\n",
+        "6:16: beam[0].taper_length",
+        "must be positive, found -0.5",
+    ),
+    (
+        "[[beam]]\ndirection = [0.0, 0.0, 1.0]\ntaper_length = 0.5\ncap_coefficient = 1\n",
+        "7:19: beam[0].cap_coefficient",
+        "a cap or a taper",
+    ),
+    (
+        "[[beam]]\ndirection = [0.0, 0.0, 1.0]\nsphere_coefficient = nan\n",
+        "6:22: beam[0].sphere_coefficient",
+        "not a finite number",
+    ),
+    (
+        "[[sphere]]\nprofile = \"square\"\n",
+        "5:11: sphere[0].profile",
+        "expected `inverse` or `inverse-square`",
+    ),
+    (
+        "[depth]\nfile = \"nowhere.exr\"\n",
+        "5:8: depth.file",
+        "nowhere.exr: cannot read: No such file",
+    ),
+    ("[depth]\nfile = \".\"\n", "5:8: depth.file", "cannot read"),
+    (
+        "[depth]\nfile = \"scene.toml\"\n",
+        "5:8: depth.file",
+        "not an OpenEXR image",
+    ),
+    (
+        "[depth]\nfile = \"d.exr\"\nalong = \"z\"\n",
+        "6:9: depth.along",
+        "expected `ray` or `axis`",
+    ),
+    (
+        "[depth]\nalong = \"axis\"\n",
+        "4:1: depth.file",
+        "required, but missing",
+    ),
+    (
         "up = [0.0, 4.0, -2.0]\n",
         "4:6: camera.up",
         "parallel to the view",

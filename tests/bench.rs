@@ -6,7 +6,7 @@ mod common;
 use std::process::Command;
 use std::time::Duration;
 
-use energywave::bench::{DIVISIONS, RESOLUTIONS, Table, measure, turned};
+use energywave::bench::{DIVISIONS, RESOLUTIONS, TABLE_2010, Table, measure, turned};
 use energywave::image::compare;
 use energywave::{RadianceImage, reference};
 use serde_json::Value;
@@ -116,6 +116,33 @@ fn a_table_has_nine_cells_with_their_frames() {
 }
 
 #[test]
+fn the_table_of_2010_has_four_cells_and_a_comparison() {
+    let (cells, folder) = bench(&["--table", "2010"]);
+    let cells = cells.as_array().unwrap();
+    assert_eq!(cells.len(), 4);
+    for (cell, known) in cells.iter().zip(TABLE_2010) {
+        assert_eq!(
+            (&cell["table"], &cell["field"]),
+            (&2010.into(), &"beam".into())
+        );
+        assert_eq!(cell["resolution"], known.resolution);
+        assert_eq!(cell["depth"], known.has_depth);
+        assert_eq!(cell["paper_fps"], known.paper_fps);
+        assert!(cell["tiles_fps"].as_f64().unwrap() > 0.0);
+        let ratio = cell["fps"].as_f64().unwrap() / known.paper_fps;
+        assert!((cell["ratio"].as_f64().unwrap() / ratio - 1.0).abs() < 1e-9);
+    }
+    assert!(cells[3]["single_threaded_fps"].as_f64().unwrap() > 0.0);
+    assert_eq!(cells[3]["paper_single_threaded_fps"], 1.0);
+    assert!(cells[0]["single_threaded_fps"].is_null());
+    let frame = cells[1]["frame"].as_u64().unwrap() as u32;
+    let scene = turned(&TABLE_2010[1].scene().unwrap(), frame);
+    let image = RadianceImage::open(folder.path().join("frames/beam-256-depth.exr")).unwrap();
+    let found = compare(&image, &reference::render(&scene).unwrap()).unwrap();
+    assert!(common::meets(&found, 1e-3), "{found:?}");
+}
+
+#[test]
 fn a_scene_is_measured_with_its_overrides() {
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/figure-09.toml");
     let (record, folder) = bench(&[scene, "--size", "32x16", "--divisions", "10"]);
@@ -143,6 +170,7 @@ fn a_bench_of_nothing_that_exists_is_refused() {
         )
     };
     assert_eq!(run(&["--table", "4"]).0, Some(2));
+    assert_eq!(run(&["--table", "2006"]).0, Some(2));
     let (code, message) = run(&["--divisions", "64"]);
     assert_eq!(code, Some(2));
     assert!(message.contains("SCENE"), "{message}");

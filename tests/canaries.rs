@@ -99,7 +99,7 @@ fn marks_left(
 
 #[test]
 fn nothing_is_written_behind_the_image() {
-    let exact = Rule::of(&Integration::default()).definitions();
+    let exact = Rule::of(&Integration::default(), false).definitions();
     let tiles = format!("{exact} -D PER_RAY= -D MOST_WORDS=4 -D TILE_WORKERS=1");
     for lanes in LANE_WIDTHS {
         for (kernel, method) in [("render", ""), ("render", &exact), ("tiles", &tiles)] {

@@ -123,6 +123,69 @@ fn usage_errors_exit_with_2_and_write_nothing() {
 }
 
 #[test]
+fn depths_hide_light_or_are_refused_before_anything_is_written() {
+    let folder = Folder::new();
+    let size = energywave::scene::ImageSize {
+        width: 24,
+        height: 16,
+    };
+    let save = |name: &str, size, value: f32| {
+        let mut image = energywave::RadianceImage::new(size).unwrap();
+        image.as_mut_slice().fill(value);
+        let display = energywave::scene::Display::default();
+        image.save(folder.path().join(name), &display).unwrap();
+    };
+    save("near.exr", size, 3.5);
+    save("far.exr", size, f32::INFINITY);
+    save("nan.exr", size, f32::NAN);
+    save("negative.exr", size, -1.0);
+    std::fs::write(folder.path().join("text.exr"), "depth").unwrap();
+    let draw = |name: &str, depth: &[&str]| {
+        let options = ["--size", "24x16", "--device", device()];
+        folder.render(name, &[&options, depth].concat())
+    };
+    let light = |name: &str, depth: &[&str]| -> f32 {
+        expect(&draw(name, depth), 0, "");
+        let image = energywave::RadianceImage::open(folder.path().join(name)).unwrap();
+        image.as_slice().iter().sum()
+    };
+    let open = light("open.exr", &[]);
+    assert_eq!(light("far-away.exr", &["--depth", "far.exr"]), open);
+    let by_ray = light("ray.exr", &["--depth", "near.exr"]);
+    let by_axis = light(
+        "axis.exr",
+        &["--depth", "near.exr", "--depth-along", "axis"],
+    );
+    // A depth along the axis lies farther out along a slanted ray.
+    assert!(
+        by_ray < by_axis && by_axis < 0.9 * open,
+        "{by_ray} {by_axis} {open}"
+    );
+
+    let before = folder.names().len();
+    for (file, words) in [
+        ("nan.exr", "nan.exr: NaN at column 0, row 0"),
+        ("negative.exr", "negative.exr: -1 at column 0, row 0"),
+        ("text.exr", "text.exr: not an OpenEXR image"),
+        ("nowhere.exr", "nowhere.exr: cannot read"),
+    ] {
+        expect(&draw("out.png", &["--depth", file]), 3, words);
+    }
+    let other_size = folder.render("out.png", &["--depth", "near.exr"]);
+    expect(
+        &other_size,
+        3,
+        "the depth image has 24x16 pixels, the image 256x256",
+    );
+    expect(
+        &draw("out.png", &["--depth-along", "axis"]),
+        2,
+        "--depth <FILE>",
+    );
+    assert_eq!(folder.names().len(), before);
+}
+
+#[test]
 fn an_image_beyond_the_limit_exits_with_3() {
     let folder = Folder::new();
     expect(

@@ -123,6 +123,19 @@ fn powers_of_two_and_logarithms_are_within_a_few_roundings() {
 }
 
 #[test]
+fn the_arctangent_is_within_a_few_roundings() {
+    let values: Vec<f32> = (0..1600).map(|i| i as f32 / 1599.0).collect();
+    for lanes in LANE_WIDTHS {
+        let bench = Bench::new(lanes, "");
+        let found = &bench.run("arctangents", &[&values], values.len(), 1)[0];
+        for (x, value) in values.iter().zip(found) {
+            let error = (f64::from(*value) - f64::from(*x).atan()).abs();
+            assert!(error < ELEMENTARY_ERROR, "{lanes} lanes, {x}: {error:e}");
+        }
+    }
+}
+
+#[test]
 fn the_cosine_of_a_third_of_the_angle_is_within_its_polynomials_error() {
     let values: Vec<f32> = (0..1600)
         .map(|i| (i as f32 / 799.5 - 1.0).clamp(-1.0, 1.0))
@@ -259,6 +272,7 @@ fn distance_error(bench: &Bench, kernel: &str, scene: &Scene, seed: u64) -> f64 
     let source: &[f32] = match kernel {
         "sphere_distance" => bytemuck::cast_slice(&packed.spheres),
         "cylinder_distance" => bytemuck::cast_slice(&packed.cylinders),
+        "beam_distance" => bytemuck::cast_slice(&packed.beams),
         "torus_distance" => bytemuck::cast_slice(&packed.tori),
         _ => bytemuck::cast_slice(&packed.curves),
     };
@@ -275,9 +289,17 @@ fn distance_error(bench: &Bench, kernel: &str, scene: &Scene, seed: u64) -> f64 
     let mut lists = vec![source];
     lists.extend(inputs.iter().map(Vec::as_slice));
     let found = &bench.run(kernel, &lists, COUNT, 1)[0];
-    let field = &reference::sources(scene)[0].field;
+    // Of a beam's parts one is lit.
+    let sources = reference::sources(scene);
+    let distance = |point| {
+        let samples = sources.iter().map(|source| source.field.sample(point));
+        samples
+            .filter(|sample| sample.intensity > 0.0)
+            .map(|sample| sample.distance2.sqrt())
+            .sum::<f64>()
+    };
     let error = |i: usize| {
-        let expected = field.sample(rays[i].at(f64::from(ss[i]))).distance2.sqrt();
+        let expected = distance(rays[i].at(f64::from(ss[i])));
         let error = (f64::from(found[i]) - expected).abs();
         if error.is_nan() { f64::INFINITY } else { error }
     };
@@ -297,6 +319,18 @@ fn distance_cases() -> Vec<(&'static str, Scene)> {
             .cylinders
             .push(common::cylinder([0.1, 0.6, 0.2], direction));
         cases.push(("cylinder_distance", scene));
+    }
+    // Far behind its tip a beam is a point, far ahead of it a line.
+    for (tip, direction) in [
+        ([6.0, 0.9, 0.8], [1.0, 0.1, 0.2]),
+        ([-6.0, -0.9, -0.8], [1.0, 0.1, 0.2]),
+    ] {
+        let mut scene = empty();
+        scene.beams.push(energywave::scene::Beam {
+            tip: tip.into(),
+            ..energywave::scene::Beam::new(direction.into())
+        });
+        cases.push(("beam_distance", scene));
     }
     for (axis, radius) in [
         ([0.0, 0.0, 1.0], 0.9),

@@ -85,6 +85,29 @@ fn figures_and_random_scenes_meet_every_tolerance() {
 }
 
 #[test]
+fn squares_meet_every_tolerance() {
+    let random = random_scenes().into_iter().step_by(2);
+    let squared = random.map(|(name, scene)| (name, common::squared(&scene)));
+    let scenes = with_references(squared.collect());
+    let mut renderer = renderer(common::device().lanes, "");
+    println!("          1e-8    1e-7    1e-6    1e-5    1e-4    1e-3    1e-2    1e-1");
+    for tolerance in TOLERANCES {
+        let mut all = Vec::new();
+        for (name, scene, expected) in &scenes {
+            let mut scene = scene.clone();
+            scene.integration.tolerance = tolerance;
+            let found = difference(&renderer.render(&scene).unwrap(), expected);
+            assert!(
+                meets(&found, tolerance),
+                "{name} at {tolerance:e}: {found:?}"
+            );
+            all.push(found);
+        }
+        println!("{}", plot(tolerance, &all));
+    }
+}
+
+#[test]
 fn without_cutting_unresolved_panels_tight_tolerances_are_missed() {
     let options = "-DMOST_CUTS=0";
     let mut renderer = renderer(common::device().lanes, options);
@@ -104,13 +127,22 @@ fn without_cutting_unresolved_panels_tight_tolerances_are_missed() {
 
 #[test]
 fn spoiled_fields_and_spoiled_closed_forms_miss_the_tolerance() {
-    for (kind, spoiled) in [
+    let inverse = [
         (Kind::Sphere, "-DHALF_LN_2=0.35f"),
         (Kind::Cylinder, "-DHALF_LN_2=0.35f"),
+        (Kind::Beam, "-DHALF_LN_2=0.35f"),
         (Kind::Torus, common::BROKEN_FIELDS),
         (Kind::Curve, common::BROKEN_FIELDS),
-    ] {
-        let scene = scene_of(kind, 3, 24);
+    ];
+    let squared = [
+        (Kind::Sphere, "-DHALF_PI=1.58f"),
+        (Kind::Beam, "-DHALF_PI=1.58f"),
+        (Kind::Torus, common::BROKEN_FIELDS),
+    ];
+    let inverse = inverse.map(|(kind, spoiled)| (kind, spoiled, scene_of(kind, 3, 24)));
+    let squared =
+        squared.map(|(kind, spoiled)| (kind, spoiled, common::squared(&scene_of(kind, 3, 24))));
+    for (kind, spoiled, scene) in inverse.into_iter().chain(squared) {
         let expected = reference::render(&scene).unwrap();
         let image = |extra: &str| {
             let mut renderer = renderer(common::device().lanes, extra);

@@ -41,6 +41,11 @@ fn scenes(width: u32, height: u32) -> Vec<(String, Scene)> {
         scene.curves.push(full.curves[index].clone());
         scenes.push((format!("curve {index}"), scene));
     }
+    for index in 0..full.beams.len() {
+        let mut scene = empty_scene(width, height);
+        scene.beams.push(full.beams[index].clone());
+        scenes.push((format!("beam {index}"), scene));
+    }
     scenes.push(("all kinds".to_owned(), full));
     scenes
 }
@@ -236,6 +241,9 @@ fn decay_measure_and_softening_are_the_references() {
     scene.integration.softening = 0.0;
     scene.integration.measure = Measure::Length;
     let by_length = check(&scene, "length");
+    scene.integration.measure = Measure::Parameter;
+    let squared = check(&common::squared(&scene), "squares");
+    assert!(common::difference(&squared, &plain).max > 0.1);
     let ratio = by_length.as_slice()[0] / plain.as_slice()[0];
     let length = scene.camera.ray_length() as f32;
     assert!((ratio / length - 1.0).abs() < 1e-5, "{ratio} {length}");

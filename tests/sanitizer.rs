@@ -4,6 +4,7 @@
 
 mod common;
 
+use energywave::image::DepthAlong;
 use energywave::scene::Method;
 use energywave::verify::{KnownRay, built_in_rays};
 use energywave::{BuildOptions, Renderer};
@@ -34,10 +35,21 @@ fn every_kernel_runs_on_every_lane_width() {
         let mut renderer = Renderer::with_options(&common::device(), &options).unwrap();
         for method in [Method::Simpson, Method::Exact] {
             scene.integration.method = method;
+            // Squares behind a wall with an edge.
+            let mut hidden = common::squared(&scene);
+            hidden.depth = Some(common::depths(&scene, DepthAlong::Axis, |column, row| {
+                if column + row < 6 {
+                    3.0 + 0.1 * f64::from(row)
+                } else {
+                    f64::INFINITY
+                }
+            }));
             let image = renderer.render(&scene).unwrap();
             assert!(image.as_slice().iter().all(|value| value.is_finite()));
             let traced = renderer.trace(&scene, &rays).unwrap();
             assert!(traced.iter().flatten().all(|value| value.is_finite()));
+            let hidden = renderer.render(&hidden).unwrap();
+            assert!(hidden.as_slice().iter().all(|value| value.is_finite()));
         }
     }
 }

@@ -3,6 +3,10 @@
 #pragma once
 #include "closed_form.h"
 
+#ifndef HALF_PI // a test spoils it
+#define HALF_PI 1.57079633f
+#endif
+
 // From 1 / f^2 at four Gauss-Legendre nodes, for a stretch so short that f hardly changes. It begins with f^2 = middle2
 // in its middle; half of `rise` is added at its end and taken away at its beginning, and `bulge` added at both.
 INLINE floatv short_square_over(const Ends *const ends, const floatv middle2, const floatv rise, const floatv bulge) {
@@ -33,7 +37,7 @@ INLINE floatv long_square_over(const Ends *const ends, const floatv least, const
     const floatv t = min(root * d * per_sum, 1.0f);
     const floatv arc = arctangent_ratio(t * t);
     const floatv beyond = 2.0f * d * per_sum * arc;
-    const floatv angle = select(beyond, fma(splat(M_PI_F), per_root, -beyond), ends->g < 0.0f);
+    const floatv angle = select(beyond, fma(splat(2.0f * HALF_PI), per_root, -beyond), ends->g < 0.0f);
     const floatv growth = LN_2 * binary_logarithm(ends->f1 * inverse(max(ends->f0, 1e-18f)));
 
     // What is linear in v, at the peak, and its slope.

@@ -49,8 +49,8 @@ impl DepthImage {
                 size.pixels()
             ));
         }
-        // NaN is no number from 0 on either.
-        if let Some(index) = values.iter().position(|depth| !(*depth >= 0.0)) {
+        let is_none = |depth: &f32| depth.is_nan() || *depth < 0.0;
+        if let Some(index) = values.iter().position(is_none) {
             let width = size.width as usize;
             return fault(format!(
                 "{} at column {}, row {}, counted from 0; a depth is a number from 0 on, infinite where nothing hides \

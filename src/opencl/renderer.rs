@@ -127,7 +127,8 @@ impl OpenClRenderer {
         sources: Sources,
         rays: Option<&[layout::RayRecord]>,
     ) -> Result<Job> {
-        let rule = self.options.rule.unwrap_or(Rule::of(&scene.integration));
+        let fitting = Rule::of(&scene.integration, sources.have_squares());
+        let rule = self.options.rule.unwrap_or(fitting);
         let units = self.device().compute_units;
         let job = Job::new(scene, rule, view, sources, rays.is_some(), units);
         self.kernels

@@ -17,13 +17,17 @@ pub struct Rule {
 }
 
 /// The least tolerance for which a rule serves, and the rule: `cargo bench --bench rules` shows what each is good for.
-const RULES: [(f64, Rule); 5] = [
+const RULES: [(f64, Rule); 6] = [
     (1e-1, rule(4, 1.0, 1e-1)),
     (1e-2, rule(8, 1e-1, 1e-3)),
     (1e-3, rule(8, 2e-3, 2e-4)),
     (1e-4, rule(10, 5e-5, 2e-5)),
-    (0.0, rule(10, 3e-5, 5e-6)),
+    (1e-5, rule(10, 3e-5, 5e-6)),
+    (0.0, rule(10, 3e-6, 2e-6)),
 ];
+
+/// The loosest tolerance whose rule serves squares.
+const MOST_FOR_SQUARES: f64 = 1e-3;
 
 const fn rule(nodes: u32, torus_threshold: f32, curve_threshold: f32) -> Rule {
     Rule {
@@ -35,9 +39,12 @@ const fn rule(nodes: u32, torus_threshold: f32, curve_threshold: f32) -> Rule {
 }
 
 impl Rule {
-    /// The rule that meets [`Integration::tolerance`].
-    pub fn of(integration: &Integration) -> Self {
-        let serves = |(tolerance, _): &&(f64, Self)| integration.tolerance >= *tolerance;
+    /// The rule that meets [`Integration::tolerance`]. Fields that fall off with the squared distance have sharper peaks, which
+    /// a loose rule may miss.
+    pub fn of(integration: &Integration, has_squares: bool) -> Self {
+        let most = if has_squares { MOST_FOR_SQUARES } else { 1.0 };
+        let wanted = integration.tolerance.min(most);
+        let serves = |(tolerance, _): &&(f64, Self)| wanted >= *tolerance;
         let [.., (_, strictest)] = RULES;
         RULES
             .iter()
@@ -130,10 +137,13 @@ mod tests {
     #[test]
     fn stricter_tolerances_have_stricter_rules() {
         let rule = |tolerance| {
-            Rule::of(&Integration {
-                tolerance,
-                ..Integration::default()
-            })
+            Rule::of(
+                &Integration {
+                    tolerance,
+                    ..Integration::default()
+                },
+                false,
+            )
         };
         let tolerances = [0.5, 1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 1e-12];
         for pair in tolerances.windows(2) {

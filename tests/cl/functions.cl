@@ -21,6 +21,11 @@ __kernel void logarithms(__global const float *x, __global float *result) {
     STORE(binary_logarithm(LOAD(x)), result);
 }
 
+// atan(x) for x from 0 to 1.
+__kernel void arctangents(__global const float *x, __global float *result) {
+    STORE(LOAD(x) * arctangent_ratio(LOAD(x) * LOAD(x)), result);
+}
+
 __kernel void third(__global const float *x, __global float *result) {
     STORE(cosine_of_third(LOAD(x)), result);
 }
@@ -58,5 +63,6 @@ __kernel void spline(__global const SplinePiece *pieces, __global const float *c
 
 FIELD_KERNEL(sphere, Sphere, spheres)
 FIELD_KERNEL(cylinder, Cylinder, cylinders)
+FIELD_KERNEL(beam, Beam, beams)
 FIELD_KERNEL(torus, Torus, tori)
 FIELD_KERNEL(curve, Curve, curves)

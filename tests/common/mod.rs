@@ -138,7 +138,7 @@ pub fn full_scene(width: u32, height: u32) -> Scene {
     scene
         .cylinders
         .push(cylinder([0.0, 0.6, 0.2], [1.0, 0.2, 0.1]));
-    let (right, up) = ([1.0, 0.1, 0.2], [-0.3, 0.2, 0.9]);
+    let (right, up) = ([1.0, 0.15, 0.3], [-0.3, 0.2, 0.9]);
     scene.beams.push(beam([-0.3, 0.2, 0.4], right, None));
     scene.beams.push(beam([0.5, 0.4, -0.2], up, Some(0.6)));
     scene
