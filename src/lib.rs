@@ -7,8 +7,12 @@
 //! zeta(s) = alpha / (s + beta)^2     the decay, or 1                          eq. 21
 //! psi(P)  = sum of coefficient * field(P)                                     eq. 18
 //! field   = 1 / distance to the core: a point, a line, a ring,                eq. 2, 3, 7
-//!           a quadratic curve, here times its local intensity                 eq. 8-17
+//!           a quadratic curve, here times its local intensity,                eq. 8-17
+//!           a half-line                                                       Abe, Watanabe 2010, eq. 6, 11, 12
+//!           or the square of that                                             Sakai 2006
 //! ```
+//!
+//! Where surfaces hide light, a [`DepthImage`](image::DepthImage) ends each ray (2010, eq. 13, 14).
 //!
 //! The integral is computed to a stated relative error, or summed by the paper's Simpson rule ([`scene::Method`]); the
 //! former at every pixel near a source's core, at few pixels of a tile elsewhere ([`scene::Sampling`]).
