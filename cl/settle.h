@@ -33,15 +33,18 @@ INLINE bool JOIN(settle_, FIELD)(const TileTask *const task, const TileRays *con
         show(integral, first_ray(round), memory->integrals);
         *integrals += LANES;
 #ifdef DEPTH
-        const floatv at_end = JOIN(FIELD, _at_end)(&rays->nodes[round], task->sources, index);
-        const floatv light_at_end = at_end * decay_at(task->quadrature->decay, rays->nodes[round].end);
-        show(END_ERROR_WEIGHT * end_error * fabs(light_at_end) - MOST_ERROR(task->pass) * fabs(integral),
-             first_ray(round), memory->excess);
+        if (end_error > 0.0f) {
+            const floatv at_end = JOIN(FIELD, _at_end)(&rays->nodes[round], task->sources, index);
+            const floatv light_at_end = at_end * decay_at(task->quadrature->decay, rays->nodes[round].end);
+            const floatv excess =
+                fma(splat(END_ERROR_WEIGHT * end_error), fabs(light_at_end), -MOST_ERROR(task->pass) * fabs(integral));
+            show(excess, first_ray(round), memory->excess);
+        }
 #endif
     }
     meet();
 #ifdef DEPTH
-    if (!none_is_positive(memory->excess))
+    if (end_error > 0.0f && !none_is_positive(memory->excess))
         return false;
 #endif
     if (!seems_smooth(task->pass, memory->integrals))
