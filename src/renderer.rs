@@ -9,7 +9,7 @@ use crate::image::RadianceImage;
 use crate::opencl::{BuildOptions, Mapped, OpenClRenderer};
 use crate::ray::Ray;
 use crate::reference::{self, Tracer};
-use crate::scene::{Method, Scene};
+use crate::scene::{ImageSize, Method, Scene};
 
 /// What a frame cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -108,7 +108,8 @@ impl Renderer {
     ) -> Result<RadianceImage> {
         scene.validate()?;
         let mut image = RadianceImage::new(scene.image)?;
-        self.draw(scene, image.as_mut_slice(), progress)?;
+        let row = 4 * scene.image.width as usize;
+        self.draw(scene, image.as_mut_slice(), row, progress)?;
         Ok(image)
     }
 
@@ -127,7 +128,36 @@ impl Renderer {
                 scene.image.height
             )));
         }
-        self.draw(scene, target, &mut |_| ControlFlow::Continue(()))
+        let row = 4 * scene.image.width as usize;
+        self.draw(scene, target, row, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Renders into a part of the caller's memory, such as a part of a larger image: linear RGBA by rows from the top left,
+    /// the first at the beginning of `target`, each `stride` values after the one before. What lies between the rows, and
+    /// after the last, is left alone.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::Unsupported`] if a row of `4 * width` values is longer than `stride`, or
+    /// `target` ends before the last row does.
+    pub fn render_into_rows(
+        &mut self,
+        scene: &Scene,
+        target: &mut [f32],
+        stride: usize,
+    ) -> Result<()> {
+        scene.validate()?;
+        let (row, rows) = (4 * scene.image.width as usize, scene.image.height as usize);
+        let needed = (rows - 1).saturating_mul(stride).saturating_add(row);
+        if stride < row || target.len() < needed {
+            return Err(Error::Unsupported(format!(
+                "render_into_rows: {} values in rows {stride} apart; {}x{} RGBA pixels need rows of {row}, and {needed} in \
+                 all",
+                target.len(),
+                scene.image.width,
+                scene.image.height
+            )));
+        }
+        self.draw(scene, target, stride, &mut |_| ControlFlow::Continue(()))
     }
 
     /// Renders into the renderer's own memory. On a CPU device the image is where the kernels wrote it: nothing is copied.
@@ -143,11 +173,7 @@ impl Renderer {
             }
             RendererBackend::Reference { image, cost } => {
                 let begun = Instant::now();
-                let kept = image.take().filter(|image| image.size() == scene.image);
-                let image = image.insert(match kept {
-                    Some(image) => image,
-                    None => RadianceImage::new(scene.image)?,
-                });
+                let image = kept_image(image, scene.image)?;
                 let nothing = &mut |_: f32| ControlFlow::Continue(());
                 let method = scene.integration.method;
                 reference::render_into(scene, method, image.as_mut_slice(), nothing)?;
@@ -169,13 +195,27 @@ impl Renderer {
         &mut self,
         scene: &Scene,
         target: &mut [f32],
+        stride: usize,
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
         match &mut self.backend {
-            RendererBackend::OpenCl(renderer) => renderer.render_into(scene, target, progress),
-            RendererBackend::Reference { cost, .. } => {
+            RendererBackend::OpenCl(renderer) => {
+                renderer.render_into(scene, target, stride, progress)
+            }
+            RendererBackend::Reference { image, cost } => {
                 let begun = Instant::now();
-                reference::render_into(scene, scene.integration.method, target, progress)?;
+                let (method, row) = (scene.integration.method, 4 * scene.image.width as usize);
+                if stride == row {
+                    let target = &mut target[..4 * scene.image.pixels()];
+                    reference::render_into(scene, method, target, progress)?;
+                } else {
+                    let image = kept_image(image, scene.image)?;
+                    reference::render_into(scene, method, image.as_mut_slice(), progress)?;
+                    let rows = image.as_slice().chunks_exact(row);
+                    for (to, from) in target.chunks_mut(stride).zip(rows) {
+                        to[..row].copy_from_slice(from);
+                    }
+                }
                 *cost = reference_cost(scene, begun.elapsed());
                 Ok(())
             }
@@ -211,6 +251,15 @@ impl Renderer {
             }
         }
     }
+}
+
+/// The renderer's own image, made anew if it has another size.
+fn kept_image(image: &mut Option<RadianceImage>, size: ImageSize) -> Result<&mut RadianceImage> {
+    let kept = image.take().filter(|image| image.size() == size);
+    Ok(image.insert(match kept {
+        Some(image) => image,
+        None => RadianceImage::new(size)?,
+    }))
 }
 
 /// The reference's time is all its own; the samples of its adaptive quadrature are not counted.

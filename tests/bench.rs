@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use energywave::bench::{DIVISIONS, RESOLUTIONS, TABLE_2010, Table, measure, turned};
 use energywave::image::compare;
-use energywave::{RadianceImage, reference};
+use energywave::{Device, RadianceImage, Renderer, reference};
 use serde_json::Value;
 
 /// As in tests/images.rs: a sample next to a core outweighs the ray's others and has few float32 digits.
@@ -63,6 +63,49 @@ fn mapped_read_and_returned_images_are_the_same() {
     renderer.render_into(&scene, &mut read).unwrap();
     assert_eq!(read, returned.as_slice());
     assert!(renderer.render_into(&scene, &mut read[1..]).is_err());
+}
+
+#[test]
+fn rows_go_where_the_caller_wants_them_and_nothing_between_is_touched() {
+    let scene = common::full_scene(37, 11);
+    let reference = Device::select("reference").unwrap();
+    let renderers = [
+        common::renderer(common::device().lanes, ""),
+        Renderer::new(&reference).unwrap(),
+    ];
+    for mut renderer in renderers {
+        let image = renderer.render(&scene).unwrap();
+        for stride in [4 * 37, 4 * 37 + 1, 4 * 64] {
+            let mut target = vec![-7.0; 11 * stride + 5];
+            renderer
+                .render_into_rows(&scene, &mut target, stride)
+                .unwrap();
+            let rows = image.as_slice().chunks(4 * 37);
+            for (found, expected) in target.chunks(stride).zip(rows) {
+                assert_eq!(&found[..4 * 37], expected);
+                assert!(found[4 * 37..].iter().all(|value| *value == -7.0));
+            }
+            assert!(target[11 * stride..].iter().all(|value| *value == -7.0));
+            // The last row needs nothing behind it.
+            let least = 10 * stride + 4 * 37;
+            assert!(
+                renderer
+                    .render_into_rows(&scene, &mut target[..least], stride)
+                    .is_ok()
+            );
+            let short = renderer.render_into_rows(&scene, &mut target[..least - 1], stride);
+            let message = short.unwrap_err().to_string();
+            assert!(
+                message.contains(&format!("and {least} in all")),
+                "{message}"
+            );
+        }
+        assert!(
+            renderer
+                .render_into_rows(&scene, &mut [0.0; 4096], 4 * 36)
+                .is_err()
+        );
+    }
 }
 
 /// Runs `energywave bench` in a fresh folder: its JSON, and the folder.

@@ -139,6 +139,53 @@ impl<T: Pod> DeviceBuffer<T> {
         Ok(())
     }
 
+    /// Like [`DeviceBuffer::read`] of so many elements, in rows of `row` values that begin `stride` values apart in `target`;
+    /// what lies between them is left alone.
+    pub(super) fn read_rows<V: Pod>(
+        &self,
+        compute: &Compute,
+        len: usize,
+        row: usize,
+        target: &mut [V],
+        stride: usize,
+    ) -> Result<()> {
+        let call = "clEnqueueReadBufferRect";
+        self.check_len(compute, call, len)?;
+        let values = len * (size_of::<T>() / size_of::<V>());
+        let rows = values / row.max(1);
+        if rows == 0 {
+            return Ok(());
+        }
+        if target.len() < (rows - 1) * stride + row || stride < row {
+            return Err(Error::Device {
+                device: compute.device.name.clone(),
+                call,
+                code: format!("{} values for {rows} rows {stride} apart", target.len()),
+                advice: "a fault of this program: please report it",
+            });
+        }
+        let bytes = size_of::<V>();
+        let (origin, region) = ([0_usize; 3], [row * bytes, rows, 1]);
+        // SAFETY: buffer and target hold all rows, and the blocking call ends before the borrow does.
+        unsafe {
+            compute.queue.enqueue_read_buffer_rect(
+                &self.buffer,
+                CL_TRUE,
+                origin.as_ptr(),
+                origin.as_ptr(),
+                region.as_ptr(),
+                row * bytes,
+                0,
+                stride * bytes,
+                0,
+                target.as_mut_ptr().cast::<c_void>(),
+                &[],
+            )
+        }
+        .map_err(failed(&compute.device.name, call))?;
+        Ok(())
+    }
+
     /// Copies `data` to the first elements before the next command of the queue begins, without waiting.
     pub(super) fn write_static(&mut self, compute: &Compute, data: &'static [T]) -> Result<()> {
         self.check_len(compute, "clEnqueueWriteBuffer", data.len())?;

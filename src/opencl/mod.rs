@@ -26,3 +26,34 @@ pub use mapped::Mapped;
 pub use program::{Argument, BuildOptions, Program};
 pub use renderer::OpenClRenderer;
 pub use source::{FILES, resolve};
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::bench::Table;
+
+    #[test]
+    fn an_image_larger_than_a_buffer_comes_in_bands() {
+        let mut scene = Table::Torus.scene(96, 64);
+        scene.image.width = 100;
+        let mut images = Vec::new();
+        for bytes in [1 << 30, 40_000] {
+            let mut device = discover().devices.swap_remove(0);
+            device.max_allocation_bytes = bytes;
+            let mut renderer = OpenClRenderer::new(&device, &BuildOptions::default()).unwrap();
+            for stride in [400, 401] {
+                let mut target = vec![0.0; 96 * stride];
+                let nothing = &mut |_: f32| ControlFlow::Continue(());
+                renderer
+                    .render_into(&scene, &mut target, stride, nothing)
+                    .unwrap();
+                let rows = target.chunks(stride).map(|row| row[..400].to_vec());
+                images.push(rows.collect::<Vec<_>>());
+            }
+        }
+        assert!(images.windows(2).all(|pair| pair[0] == pair[1]));
+        assert!(images[0].iter().flatten().all(|value| *value > 0.0));
+    }
+}

@@ -41,6 +41,9 @@ pub struct OpenClRenderer {
     pub(super) compute: Compute,
 }
 
+/// Reads a band of pixels from the beginning of the output buffer.
+type Read<'a> = dyn FnMut(&DeviceBuffer<Pixel>, &Compute, Range<usize>) -> Result<()> + 'a;
+
 /// A launch under way.
 struct Launched {
     /// Of each pass.
@@ -80,15 +83,29 @@ impl OpenClRenderer {
         self.compute.device()
     }
 
-    /// Renders a valid scene into `target`, RGBA by rows. `progress` hears the finished share and may stop the work.
+    /// Renders a valid scene into `target`, RGBA by rows that begin `stride` values apart. `progress` hears the finished
+    /// share and may stop the work.
     pub(crate) fn render_into(
         &mut self,
         scene: &Scene,
         target: &mut [f32],
+        stride: usize,
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
         let job = self.job(scene)?;
-        self.run(&job, bytemuck::cast_slice_mut(target), progress)
+        let row = 4 * scene.image.width as usize;
+        let grain = job.work.grain.max(scene.image.width); // whole rows
+        let mut read = |output: &DeviceBuffer<Pixel>, compute: &Compute, band: Range<usize>| {
+            let first = band.start / scene.image.width as usize * stride;
+            match stride == row {
+                true => output.read(
+                    compute,
+                    bytemuck::cast_slice_mut(&mut target[4 * band.start..4 * band.end]),
+                ),
+                false => output.read_rows(compute, band.len(), row, &mut target[first..], stride),
+            }
+        };
+        self.run(&job, scene.image.pixels(), grain, &mut read, progress)
     }
 
     /// What the last frame cost.
@@ -116,7 +133,11 @@ impl OpenClRenderer {
         let sources = Sources::new(scene, origin, reach, 1.0);
         let job = self.upload(scene, pack::view_of_rays(scene), sources, Some(&records))?;
         let mut radiances = vec![[0.0; 4]; rays.len()];
-        self.run(&job, &mut radiances, &mut |_| ControlFlow::Continue(()))?;
+        let mut read = |output: &DeviceBuffer<Pixel>, compute: &Compute, band: Range<usize>| {
+            output.read(compute, &mut radiances[band])
+        };
+        let nothing = &mut |_: f32| ControlFlow::Continue(());
+        self.run(&job, rays.len(), 1, &mut read, nothing)?;
         Ok(radiances)
     }
 
@@ -146,23 +167,22 @@ impl OpenClRenderer {
         Ok(job)
     }
 
-    /// Renders all of `target` in bands that fit into one buffer of the device.
+    /// Renders so many pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read.
     fn run(
         &mut self,
         job: &Job,
-        target: &mut [Pixel],
+        pixels: usize,
+        grain: u32,
+        read: &mut Read<'_>,
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
-        let total = target.len() as f32;
-        let band_len = self.band_len(target.len(), job.work.grain)?;
-        let mut end = 0;
-        self.begin(job, target.len())?;
-        for band in target.chunks_mut(band_len) {
-            let begin = end;
-            end += band.len() as u32;
-            let mut report = |pixel: u32| progress(pixel as f32 / total);
-            let last = self.launch_band(job, begin..end, &mut report)?;
-            self.output()?.read(&self.compute, band)?;
+        let band_len = self.band_len(pixels, grain)?;
+        self.begin(job, pixels)?;
+        for begin in (0..pixels).step_by(band_len) {
+            let band = begin..pixels.min(begin + band_len);
+            let mut report = |pixel: u32| progress(pixel as f32 / pixels as f32);
+            let last = self.launch_band(job, band.start as u32..band.end as u32, &mut report)?;
+            read(self.output()?, &self.compute, band)?;
             self.settle(job, last)?;
         }
         self.lists.settle(&self.compute)
