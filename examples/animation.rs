@@ -1,0 +1,73 @@
+//! Animated parameters: a beam that charges, leaves and swells. One renderer draws all frames: it keeps kernels and
+//! buffers, and uploads only what changed. Writes `frame-00.png` to `frame-23.png` into the folder given.
+//!
+//! `cargo run --release --example animation -- FOLDER`
+
+use std::path::PathBuf;
+
+use energywave::scene::{Beam, Camera, Decay, Display, ImageSize, Profile, Sphere, ToneMap};
+use energywave::{Device, Renderer, Scene};
+use glam::DVec3;
+
+const FRAMES: u32 = 24;
+
+/// 0 before `from`, 1 after `to`, smooth between.
+fn ramp(time: f64, from: f64, to: f64) -> f64 {
+    let x = ((time - from) / (to - from)).clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
+/// The scene at a time from 0 to 1.
+fn scene_at(time: f64) -> Scene {
+    let mut camera = Camera::new(DVec3::new(0.6, -5.0, 1.2), DVec3::new(0.6, 0.0, 0.0));
+    camera.near = 3.5;
+    camera.ray_length = Some(4.0);
+    let mut scene = Scene::new(camera);
+    scene.image = ImageSize {
+        width: 320,
+        height: 180,
+    };
+    scene.decay = Some(Decay {
+        alpha: 1.0,
+        beta: 1.0,
+    });
+    scene.display = Display {
+        exposure: -0.8,
+        tone_map: ToneMap::Aces,
+    };
+    let hand = DVec3::new(-1.2, 0.0, 0.0);
+    let charge = ramp(time, 0.0, 0.5);
+    scene.spheres.push(Sphere {
+        center: hand,
+        coefficient: 0.5 * charge,
+        color: DVec3::new(0.4, 0.7, 1.0),
+        profile: Profile::InverseSquare,
+        ..Sphere::default()
+    });
+    // The beam is the light between its tip and a second one of opposite sign, which flies ahead.
+    let strength = 0.2 * ramp(time, 0.45, 0.7);
+    if strength > 0.0 {
+        let beam = |tip: DVec3, coefficient: f64| Beam {
+            tip,
+            coefficient,
+            color: DVec3::new(0.3, 0.6, 1.0),
+            profile: Profile::InverseSquare,
+            ..Beam::new(DVec3::X)
+        };
+        scene.beams.push(beam(hand, strength));
+        let flown = 6.0 * ramp(time, 0.45, 1.0);
+        scene.beams.push(beam(hand + DVec3::X * flown, -strength));
+    }
+    scene
+}
+
+fn main() -> energywave::Result<()> {
+    let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_default());
+    let mut renderer = Renderer::new(&Device::best())?;
+    for frame in 0..FRAMES {
+        let scene = scene_at(f64::from(frame) / f64::from(FRAMES - 1));
+        let radiance = renderer.render(&scene)?;
+        radiance.save(folder.join(format!("frame-{frame:02}.png")), &scene.display)?;
+    }
+    Ok(())
+}

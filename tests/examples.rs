@@ -1,0 +1,84 @@
+//! Every example runs and draws what it says.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// An example's program: cargo builds examples beside the tests.
+fn program(name: &str) -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    let folder = test.parent().unwrap().parent().unwrap();
+    folder.join("examples").join(name)
+}
+
+/// The names of what an example leaves in a folder, in order.
+fn drawn(name: &str) -> (Vec<String>, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(program(name))
+        .arg(folder.path())
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{name}: {message}");
+    let entries = std::fs::read_dir(folder.path()).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    (names, folder)
+}
+
+/// Mean of a picture's bytes, 0 to 255.
+fn brightness(path: &Path) -> f64 {
+    let bytes = image::open(path).unwrap().into_rgb8().into_raw();
+    let sum: f64 = bytes.iter().map(|byte| f64::from(*byte)).sum();
+    sum / bytes.len() as f64
+}
+
+#[test]
+fn minimal_draws_a_ring() {
+    let (names, folder) = drawn("minimal");
+    assert_eq!(names, ["ring.png"]);
+    let mean = brightness(&folder.path().join("ring.png"));
+    assert!((10.0..80.0).contains(&mean), "{mean}");
+}
+
+#[test]
+fn animation_grows_brighter_from_frame_to_frame() {
+    let (names, folder) = drawn("animation");
+    assert_eq!(names.len(), 24);
+    assert_eq!(names[23], "frame-23.png");
+    let means: Vec<f64> = names
+        .iter()
+        .map(|name| brightness(&folder.path().join(name)))
+        .collect();
+    assert_eq!(means[0], 0.0);
+    assert!(
+        means.windows(2).all(|pair| pair[0] <= pair[1] + 0.05),
+        "{means:?}"
+    );
+    assert!(means[23] > 20.0, "{means:?}");
+}
+
+#[test]
+fn hidden_surfaces_draws_tetrahedra_and_their_depths() {
+    let (names, folder) = drawn("hidden_surfaces");
+    assert_eq!(names, ["hidden-surfaces-depth.exr", "hidden-surfaces.png"]);
+    let picture = image::open(folder.path().join("hidden-surfaces.png")).unwrap();
+    let picture = picture.into_rgb8();
+    // The near tetrahedron stands before the wave, the rest of the picture glows.
+    let at = |column, row| {
+        picture
+            .get_pixel(column, row)
+            .0
+            .map(u32::from)
+            .iter()
+            .sum::<u32>()
+    };
+    assert!(
+        3 * at(160, 125) < at(20, 200),
+        "{} {}",
+        at(160, 125),
+        at(20, 200)
+    );
+}
