@@ -42,7 +42,6 @@ fn scene_at(time: f64) -> Scene {
         coefficient: 0.5 * charge,
         color: DVec3::new(0.4, 0.7, 1.0),
         profile: Profile::InverseSquare,
-        ..Sphere::default()
     });
     // The beam is the light between its tip and a second one of opposite sign, which flies ahead.
     let strength = 0.2 * ramp(time, 0.45, 0.7);
