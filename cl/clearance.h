@@ -51,7 +51,12 @@ Clearance beam_clearance(const Ray *const ray, const Sources *const sources, con
     const floatv ahead = path.has_taper ? fma(path.taper_slope, s, path.taper) : fma(path.height_slope, s, path.height);
     const Clearance of_line = quadratic_clearance(ray, &path.to_line, pixel_step);
     const Clearance of_tip = quadratic_clearance(ray, &path.to_tip, pixel_step);
-    return clear_by(select(of_tip.distance2, min(of_line.distance2, of_tip.distance2), ahead >= 0.0f));
+    Clearance clearance = clear_by(select(of_tip.distance2, min(of_line.distance2, of_tip.distance2), ahead >= 0.0f));
+    // Where line and cap differ, light has a kink where the plane through the tip passes the begin or the end of rays.
+    const floatv jump = splat(!path.has_taper && path.line != path.cap ? 1.0f : 0.0f);
+    clearance.seen[1] = select(splat(0.0f), jump, path.height < 0.0f);
+    clearance.seen[2] = select(splat(0.0f), jump, fma(path.height_slope, ray->end, path.height) < 0.0f);
+    return clearance;
 }
 
 // The distance of a peak from the ray, which it has in the complex plane.

@@ -61,7 +61,9 @@ void add_light(const float4 emission, const floatv integral, const uint ray, __l
 
 #ifdef BEAMS
 #define FIELD beam
+#define HAS_PARTS
 #include "settle.h"
+#undef HAS_PARTS
 #undef FIELD
 #endif
 

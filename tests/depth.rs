@@ -8,7 +8,7 @@ use common::random::{KINDS, random_scene, scene_of};
 use common::{LANE_WIDTHS, depths, difference, meets, renderer};
 use energywave::image::{DepthAlong, compare};
 use energywave::ray::{Ray, ViewPlane};
-use energywave::scene::{Decay, ImageSize, Measure, Method, Sampling};
+use energywave::scene::{Decay, ImageSize, Measure, Method, Profile, Sampling};
 use energywave::{RadianceImage, Renderer, Scene, reference};
 use glam::DVec3;
 
@@ -294,6 +294,39 @@ fn random_scenes_with_walls_and_poles_meet_the_tolerance() {
         let image = renderer.render(&scene).unwrap();
         let found = difference(&image, &expected);
         assert!(meets(&found, 1e-3), "seed {seed}: {found:?}");
+    }
+}
+
+#[test]
+fn cores_at_the_eye_light_only_what_is_seen() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for profile in [Profile::Inverse, Profile::InverseSquare] {
+        for index in 0..4 {
+            let mut scene = common::empty_scene(25, 17);
+            scene.integration.method = Method::Exact;
+            let eye = scene.camera.eye.to_array();
+            match index {
+                0 => scene.spheres.push(common::sphere(eye, 1.0)),
+                1 => scene.cylinders.push(common::cylinder(eye, [0.3, 1.0, 0.1])),
+                2 => scene.beams.push(common::beam(eye, [0.3, 1.0, 0.1], None)),
+                _ => scene
+                    .tori
+                    .push(common::torus([0.0; 3], [0.0, 0.1, 1.0], 0.9)),
+            }
+            if profile == Profile::InverseSquare {
+                scene = common::squared(&scene);
+            }
+            for (decay, end) in [(scene.decay, 1e-8), (None, 1e-8), (None, 1e-6)] {
+                let mut scene = with_ends(&scene, DepthAlong::Ray, |_, _| end);
+                scene.decay = decay;
+                let expected = reference::render(&scene).unwrap();
+                let found = difference(&renderer.render(&scene).unwrap(), &expected);
+                assert!(
+                    meets(&found, 1e-3),
+                    "{index} {profile:?} {end:e}: {found:?}"
+                );
+            }
+        }
     }
 }
 

@@ -133,6 +133,25 @@ fn hard_views() -> Vec<(&'static str, Scene)> {
         views.push(("along a tangent of a ring", scene));
     }
 
+    // The ray along the beam is within the floor of distances all the way, and its light falls with the taper.
+    for taper in [0.5, 2.0, 13.0, 30.0] {
+        let mut scene = odd(view([0.0, -4.0, 0.0], [0.0; 3]));
+        let beam = common::beam([0.0, 10.0, 0.0], [0.0, 1.0, 0.0], Some(taper));
+        scene.beams.push(beam);
+        views.push(("along a taper", scene));
+    }
+    // The rays' lines meet at the eye, on the core, but the stretch that is lit is far from there, and short.
+    for (tip, along) in [([0.0, 10.0, 0.0], 1.0), ([0.3, -3.0, 0.2], -1.0)] {
+        for taper in [1e-5, 1e-7, 1e-9] {
+            let mut scene = odd(view([0.0, -4.0, 0.0], [0.0; 3]));
+            scene.decay = None;
+            let mut beam = common::beam(tip, [0.0, along, 0.0], Some(taper));
+            beam.sphere_coefficient = 1e-12;
+            scene.beams.push(beam);
+            views.push(("a short taper seen from its line", common::squared(&scene)));
+        }
+    }
+
     let mut scene = usual();
     scene.camera.ray_length = Some(1e5);
     scene

@@ -7,7 +7,7 @@
 #include "../elementary.h"
 #include "../ray.h"
 
-// The advance of v below which a panel is empty.
+// The advance of v, of that from the beginning of the ray, up to which a panel is empty.
 #define SHORTEST_PANEL 1e-7f
 
 // A complex zero of the squared distance along the ray, as a parameter s.
@@ -32,9 +32,11 @@ typedef struct {
     intv is_broken;     // whether it must be cut whatever the nodes say
 } PanelSum;
 
-// Whether so little of v passes that nothing adds up.
+// Whether so little of v passes, beside what has passed before, that nothing adds up.
 intv is_empty_panel(const Decay decay, const floatv from, const floatv to) {
-    return advance(decay, from, nearness(decay, from), to, nearness(decay, to)) < SHORTEST_PANEL;
+    const floatv near_to = nearness(decay, to);
+    const floatv all = advance(decay, splat(0.0f), splat(1.0f), to, near_to);
+    return advance(decay, from, nearness(decay, from), to, near_to) <= SHORTEST_PANEL * all;
 }
 
 // A ray that passes a core at a distance h below the floor f sees the field cut off at f. Where core and ray are

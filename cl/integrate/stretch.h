@@ -18,6 +18,15 @@ Stretch part_of(const Stretch stretch, const floatv from, const floatv to) {
     return part;
 }
 
+// The mean of x over a stretch, 0 at its beginning and 1 at its end, weighted with the decay: -r (log r + u) / u^2 for
+// a nearness that falls by the factor r = 1 - u.
+floatv middle_of(const floatv n0, const floatv n1) {
+    const floatv r = n1 * inverse(n0), u = max((n0 - n1) * inverse(n0), 0.0f);
+    const floatv series = fma(fma(fma(splat(0.2f), u, splat(0.25f)), u, splat(1.0f / 3.0f)), u, splat(0.5f));
+    const floatv exact = -(LN_2 * binary_logarithm(max(r, 1e-30f)) + u) * inverse(max(u * u, 1e-6f));
+    return r * select(exact, series, u < 0.03f);
+}
+
 // Where the ray is closer to the core than the floor of all distances the field is constant; a ray in a million. So
 // short a part has no digits left in s, but in x = slope s + offset.
 floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay, const Stretch stretch,
@@ -25,16 +34,17 @@ floatv with_floor(const Quadratic *const distance2, const floatv floor2, const D
     const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
     const floatv reach = 0.5f * twice_sqrt(max(floor2 - distance2->least, 1e-36f));
     const floatv x_begin = clamp(-reach, x0, x1), x_end = clamp(reach, x0, x1);
-    const floatv begin = select((x_begin - distance2->offset) * per_slope, stretch.from, x_begin == x0);
-    const floatv end = select((x_end - distance2->offset) * per_slope, stretch.to, x_end == x1);
-    const Stretch before = part_of(stretch, stretch.from, clamp(begin, stretch.from, stretch.to));
-    const Stretch after = part_of(stretch, clamp(end, stretch.from, stretch.to), stretch.to);
-    const floatv field = profiled(0.5f * twice_inverse_sqrt_(floor2), is_square);
-    const floatv light = 0.5f * (before.light_to + after.light_from);
-    const intv is_all = (x_begin == x0) & (x_end == x1);
+    floatv begin = clamp((x_begin - distance2->offset) * per_slope, stretch.from, stretch.to);
+    begin = select(select(begin, stretch.from, x0 >= -reach), stretch.to, x1 <= -reach);
+    floatv end = clamp((x_end - distance2->offset) * per_slope, stretch.from, stretch.to);
+    end = select(select(end, stretch.to, x1 <= reach), stretch.from, x0 >= reach);
+    const Stretch before = part_of(stretch, stretch.from, begin), after = part_of(stretch, end, stretch.to);
+    const intv is_all = (x0 > -reach) & (x1 < reach);
     const floatv length = select((x_end - x_begin) * per_slope, stretch.to - stretch.from, is_all);
-    const floatv near = nearness(decay, before.to) * nearness(decay, after.from);
-    const floatv inside = decay.beta > 0.0f ? length * near * decay.per_beta : length;
+    const floatv n0 = nearness(decay, begin), n1 = nearness(decay, end);
+    const floatv inside = decay.beta > 0.0f ? length * n0 * n1 * decay.per_beta : length;
+    const floatv light = fma(after.light_from - before.light_to, middle_of(n0, n1), before.light_to);
+    const floatv field = profiled(0.5f * twice_inverse_sqrt_(floor2), is_square);
     return without_floor(distance2, decay, before, x0, x_begin, is_square) + inside * light * field +
            without_floor(distance2, decay, after, x_end, x1, is_square);
 }

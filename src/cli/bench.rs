@@ -212,9 +212,7 @@ fn print_cell(cell: &Cell, is_first: bool) -> Outcome {
 }
 
 fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
-    let mut scene = Scene::from_file(path)?;
-    arguments.overrides.apply(&mut scene)?;
-    scene.validate()?;
+    let scene = Scene::from_file_with(path, |scene| arguments.overrides.apply(scene))?;
     let (device, mut renderer) = prepare(arguments)?;
     let speed = measure(&mut renderer, &scene, time(arguments))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();

@@ -39,9 +39,10 @@ impl From<Accuracy> for Row {
 }
 
 pub fn run(arguments: &CompareArguments) -> Outcome {
-    let mut scene = Scene::from_file(&arguments.scene)?;
-    scene.image = arguments.size.unwrap_or(scene.image);
-    scene.validate()?;
+    let scene = Scene::from_file_with(&arguments.scene, |scene| {
+        scene.image = arguments.size.unwrap_or(scene.image);
+        Ok(())
+    })?;
     let device = choose_device(arguments.device.device.as_deref())?;
     let mut renderer = Renderer::new(&device)?;
     catch_interrupts();

@@ -9,9 +9,8 @@ use super::{Outcome, choose_device};
 
 pub fn run(arguments: RenderArguments) -> Outcome {
     OutputFormat::of(&arguments.output)?;
-    let mut scene = Scene::from_file(&arguments.scene)?;
-    arguments.overrides.apply(&mut scene)?;
-    scene.validate()?;
+    let overrides = &arguments.overrides;
+    let scene = Scene::from_file_with(&arguments.scene, |scene| overrides.apply(scene))?;
     let device = choose_device(arguments.device.device.as_deref())?;
     catch_interrupts();
     let output = Output::create(&arguments.output)?;

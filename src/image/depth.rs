@@ -4,6 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use exr::image::{AnyChannel, FlatSamples, Layer};
+use exr::math::Vec2;
+use exr::meta::MetaData;
 use exr::prelude::{
     AnyChannels, Encoding, Image, LayerAttributes, ReadChannels, ReadLayers, WritableImage, read,
 };
@@ -11,6 +13,7 @@ use serde::Deserialize;
 
 use crate::error::{Error, Result, SceneError};
 use crate::image::{Output, OutputFormat};
+use crate::memory;
 use crate::scene::ImageSize;
 
 /// What a depth is the length of; it begins at the eye.
@@ -67,7 +70,8 @@ impl DepthImage {
         })
     }
 
-    /// Reads an OpenEXR image: its channel Z or depth, else V, Y or R, or the only one there is.
+    /// Reads an OpenEXR image: its channel Z or depth, else V, Y or R, or the only one there is. Where the data window leaves
+    /// a part of the display window out, nothing hides the light.
     ///
     /// # Errors
     /// [`Error::Input`] if the file cannot be read, has no such channel, or holds what [`DepthImage::new`] refuses.
@@ -77,6 +81,12 @@ impl DepthImage {
             path: path.to_owned(),
             reason,
         };
+        let faulty = |error| match error {
+            exr::error::Error::Io(error) => fail(format!("cannot read: {error}")),
+            other => fail(format!("not an OpenEXR image: {other}")),
+        };
+        let meta = MetaData::read_from_file(path, false).map_err(faulty)?;
+        check_claims(&meta).map_err(fail)?;
         let image = read()
             .no_deep_data()
             .largest_resolution_level()
@@ -85,16 +95,22 @@ impl DepthImage {
             .all_attributes()
             .non_parallel()
             .from_file(path)
-            .map_err(|error| match error {
-                exr::error::Error::Io(error) => fail(format!("cannot read: {error}")),
-                other => fail(format!("not an OpenEXR image: {other}")),
-            })?;
+            .map_err(faulty)?;
         let (layer, channel) = depth_channel(&image.layer_data).map_err(fail)?;
+        let shown = image.attributes.display_window;
         let size = ImageSize {
-            width: layer.size.0 as u32,
-            height: layer.size.1 as u32,
+            width: shown.size.0 as u32,
+            height: shown.size.1 as u32,
         };
-        let values = channel.sample_data.values_as_f32().collect();
+        let first = layer.attributes.layer_position - shown.position;
+        let mut values = vec![f32::INFINITY; size.pixels()];
+        for (index, depth) in channel.sample_data.values_as_f32().enumerate() {
+            let column = first.0 + (index % layer.size.0) as i32;
+            let row = first.1 + (index / layer.size.0) as i32;
+            if (0..size.width as i32).contains(&column) && (0..size.height as i32).contains(&row) {
+                values[row as usize * shown.size.0 + column as usize] = depth;
+            }
+        }
         Self::new(size, along, values).map_err(|error| match error {
             Error::Scene(fault) => fail(fault.message),
             other => other,
@@ -145,6 +161,42 @@ impl DepthImage {
     /// Whether both share their values.
     pub(crate) fn shares_values(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.values, &other.values)
+    }
+}
+
+/// A file may claim any size: nothing is allocated for more than an image may have, or the memory holds.
+fn check_claims(meta: &MetaData) -> std::result::Result<(), String> {
+    const LIMIT: usize = ImageSize::LIMIT as usize;
+    let mut bytes = 0;
+    for header in &meta.headers {
+        for window in [
+            header.layer_size,
+            header.shared_attributes.display_window.size,
+        ] {
+            if window.0.max(window.1) > LIMIT {
+                return Err(format!(
+                    "{}x{} pixels; an image is at most {LIMIT}x{LIMIT}",
+                    window.0, window.1
+                ));
+            }
+        }
+        if header
+            .channels
+            .list
+            .iter()
+            .any(|c| c.sampling != Vec2(1, 1))
+        {
+            return Err("a channel has not one sample for each pixel".to_owned());
+        }
+        bytes += header.layer_size.area() * header.channels.bytes_per_pixel;
+    }
+    match memory::available_bytes() {
+        Some(available) if bytes as u64 > available => Err(format!(
+            "{} MiB needed, {} MiB available",
+            bytes >> 20,
+            available >> 20
+        )),
+        _ => Ok(()),
     }
 }
 
@@ -225,6 +277,42 @@ mod tests {
             not_a_number.contains("NaN at column 0, row 0"),
             "{not_a_number}"
         );
+    }
+
+    #[test]
+    fn windows_are_respected_and_impossible_sizes_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("depth.exr");
+        let attributes = LayerAttributes {
+            layer_position: Vec2(1, -1),
+            ..LayerAttributes::default()
+        };
+        let values = vec![1.0, 2.0, 3.0, 4.0];
+        let channel = AnyChannel::new("Z", FlatSamples::F32(values));
+        let channels = AnyChannels::sort([channel].into_iter().collect());
+        let layer = Layer::new((2, 2), attributes, Encoding::UNCOMPRESSED, channels);
+        let mut image = Image::from_layer(layer);
+        image.attributes.display_window.position = Vec2(0, 0);
+        image.attributes.display_window.size = Vec2(3, 2);
+        image.write().to_file(&path).unwrap();
+        let opened = DepthImage::open(&path, DepthAlong::Ray).unwrap();
+        let none = f32::INFINITY;
+        assert_eq!(opened.size(), SIZE);
+        assert_eq!(opened.as_slice(), [none, 3.0, 4.0, none, none, none]);
+
+        let mut bytes = std::fs::read(&path).unwrap();
+        let key = b"dataWindow\0box2i\0";
+        let at = bytes
+            .windows(key.len())
+            .position(|part| part == key)
+            .unwrap();
+        let right = at + key.len() + 4 + 8;
+        bytes[right..right + 4].copy_from_slice(&99_999_i32.to_le_bytes());
+        std::fs::write(&path, bytes).unwrap();
+        let refused = DepthImage::open(&path, DepthAlong::Ray)
+            .unwrap_err()
+            .to_string();
+        assert!(refused.contains("at most 16384x16384"), "{refused}");
     }
 
     #[test]

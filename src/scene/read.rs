@@ -40,6 +40,9 @@ struct SceneFile {
     curve: Vec<Curve>,
 }
 
+/// Changes a scene between its reading and its check.
+type Adjust<'a> = &'a mut dyn FnMut(&mut Scene) -> Result<()>;
+
 /// A depth image in a file of its own.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -51,25 +54,28 @@ struct DepthFile {
 }
 
 impl SceneFile {
-    /// Reads what lies in other files, and checks the scene.
-    fn into_scene(self, folder: &Path) -> std::result::Result<Scene, SceneError> {
-        let open = |depth: DepthFile| {
-            DepthImage::open(folder.join(&depth.file), depth.along)
-                .map_err(|error| SceneError::value("depth.file", error.to_string()))
-        };
-        let scene = Scene {
+    /// Checks the scene, lets `adjust` change it, reads a depth image unless it has given one, and checks it again.
+    fn into_scene(self, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
+        let mut scene = Scene {
             camera: self.camera,
             image: self.image,
             decay: self.decay,
             integration: self.integration,
             display: self.display,
-            depth: self.depth.map(open).transpose()?,
+            depth: None,
             spheres: self.sphere,
             cylinders: self.cylinder,
             beams: self.beam,
             tori: self.torus,
             curves: self.curve,
         };
+        scene.check()?;
+        adjust(&mut scene)?;
+        if let (Some(depth), None) = (&self.depth, &scene.depth) {
+            let image = DepthImage::open(folder.join(&depth.file), depth.along)
+                .map_err(|error| SceneError::value("depth.file", error.to_string()))?;
+            scene.depth = Some(image);
+        }
         scene.check()?;
         Ok(scene)
     }
@@ -81,6 +87,18 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`] if the file cannot be read, [`Error::Scene`] if it does not hold a valid scene.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self> {
+        Self::from_file_with(path, |_| Ok(()))
+    }
+
+    /// Like [`Scene::from_file`]; `adjust` may change the scene, which is then checked again. A depth image that it gives takes the
+    /// place of the file's, which is then not read.
+    ///
+    /// # Errors
+    /// As [`Scene::from_file`], and those of `adjust`.
+    pub fn from_file_with(
+        path: impl AsRef<Path>,
+        mut adjust: impl FnMut(&mut Self) -> Result<()>,
+    ) -> Result<Self> {
         let path = path.as_ref();
         let text = read_text(path)?;
         let is_json = path
@@ -88,8 +106,8 @@ impl Scene {
             .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
         let folder = path.parent().unwrap_or(Path::new(""));
         let scene = match is_json {
-            true => from_json(&text, folder),
-            false => from_toml(&text, folder),
+            true => from_json(&text, folder, &mut adjust),
+            false => from_toml(&text, folder, &mut adjust),
         };
         scene.map_err(|error| name_file(error, path))
     }
@@ -99,7 +117,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with line, column and key.
     pub fn from_toml(text: &str) -> Result<Self> {
-        from_toml(text, Path::new(""))
+        from_toml(text, Path::new(""), &mut |_| Ok(()))
     }
 
     /// Reads and validates a scene in JSON, of the same structure as the TOML.
@@ -107,24 +125,27 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with the key; faults of the syntax have line and column too.
     pub fn from_json(text: &str) -> Result<Self> {
-        from_json(text, Path::new(""))
+        from_json(text, Path::new(""), &mut |_| Ok(()))
     }
 }
 
-fn from_toml(text: &str, folder: &Path) -> Result<Scene> {
+fn from_toml(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
     let locate = |key: &str| {
         let offset = KeyMap::new(text).offset_of(key);
         line_and_column(text, offset.unwrap_or(0))
     };
     let file: SceneFile = toml::from_str(text).map_err(|error| toml_fault(text, &error))?;
-    let scene = file.into_scene(folder).map_err(|mut fault| {
-        fault.position = Some(locate(&fault.key));
-        fault
-    })?;
-    Ok(scene)
+    file.into_scene(folder, adjust)
+        .map_err(|error| match error {
+            Error::Scene(mut fault) => {
+                fault.position = Some(locate(&fault.key));
+                Error::Scene(fault)
+            }
+            other => other,
+        })
 }
 
-fn from_json(text: &str, folder: &Path) -> Result<Scene> {
+fn from_json(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
     let text = text.trim_start_matches('\u{feff}');
     if text.trim().is_empty() {
         return Err(empty_file().into());
@@ -151,7 +172,7 @@ fn from_json(text: &str, folder: &Path) -> Result<Scene> {
         key: String::new(),
         message: plain_words(without_position(&error.to_string())),
     })?;
-    Ok(file.into_scene(folder)?)
+    file.into_scene(folder, adjust)
 }
 
 fn read_text(path: &Path) -> Result<String> {

@@ -16,7 +16,7 @@ pub enum Profile {
     InverseSquare,
 }
 
-/// A point of light: `1/d`, d the distance to the point M (2015, eq. 2).
+/// A point of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the point M (2015, eq. 2).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sphere {
@@ -43,7 +43,7 @@ impl Default for Sphere {
     }
 }
 
-/// An infinite line of light: `1/d`, d the distance to the line (2015, eq. 3).
+/// An infinite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the line (2015, eq. 3).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cylinder {
@@ -77,7 +77,7 @@ impl Cylinder {
     }
 }
 
-/// A half-line of light (Abe, Watanabe 2010, eq. 6, 11, 12). Ahead of the plane through its tip M, perpendicular to its
+/// A half-line of light (Abe, Watanabe 2010, eq. 6, 11, 12); `1/d^2` for `1/d` by its [`Profile`]. Ahead of the plane through its tip M, perpendicular to its
 /// direction, `1/d` with d the distance to the line; behind it `1/d` with d the distance to M, or the line's own field,
 /// fading (Sakai 2006, fig. 4.3).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -95,7 +95,8 @@ pub struct Beam {
     /// Linear RGB.
     #[serde(default = "white", deserialize_with = "read::vector")]
     pub color: DVec3,
-    /// The coefficient of the point behind the tip; `None`: the line's, without a jump between them.
+    /// The coefficient of the point behind the tip; `None`: the line's, without a jump between them. A taper stands in its
+    /// place.
     #[serde(default)]
     pub cap_coefficient: Option<f64>,
     /// The coefficient of a further sphere around M, everywhere (2010, eq. 12: a).
@@ -133,7 +134,8 @@ impl Beam {
     }
 }
 
-/// A ring of light: `1/d`, d the distance to the nearest point of the major circle (2015, eq. 7).
+/// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle (2015,
+/// eq. 7).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Torus {
@@ -170,7 +172,7 @@ impl Torus {
     }
 }
 
-/// A quadratic Bezier curve of light: `S(t*)/d`, d the distance to its nearest point `C(t*)`, `S(t*)` the local intensity
+/// A quadratic Bezier curve of light: `S(t*)/d`, or by its [`Profile`] `S(t*)/d^2`, d the distance to its nearest point `C(t*)`, `S(t*)` the local intensity
 /// there (2015, eq. 8-17).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]

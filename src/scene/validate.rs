@@ -202,11 +202,13 @@ fn check_beam(index: usize, beam: &Beam, most: f64) -> Checked {
             );
         }
     }
-    finite(&key("cap_coefficient"), beam.cap())?;
+    if let Some(cap) = beam.cap_coefficient {
+        finite(&key("cap_coefficient"), cap)?;
+    }
     finite(&key("sphere_coefficient"), beam.sphere_coefficient)?;
-    let strongest = beam.coefficient.abs().max(beam.cap().abs()) + beam.sphere_coefficient.abs();
     light(&key, beam.coefficient, beam.color, most)?;
-    light(&key, strongest, beam.color, most)
+    let strongest = beam.coefficient.abs().max(beam.cap().abs()) + beam.sphere_coefficient.abs();
+    bright(&key, strongest, beam.color, most)
 }
 
 fn check_curve(index: usize, curve: &Curve, most: f64) -> Checked {
@@ -243,6 +245,15 @@ fn light(
 ) -> Checked {
     finite(&key("coefficient"), coefficient)?;
     vector(&key("color"), color)?;
+    bright(key, coefficient, color, most)
+}
+
+fn bright(
+    key: &impl Fn(&'static str) -> String,
+    coefficient: f64,
+    color: DVec3,
+    most: f64,
+) -> Checked {
     let brightest = most * coefficient.abs() * color.abs().max_element();
     if brightest > BRIGHTEST {
         return fault(
