@@ -81,6 +81,11 @@ const BAD: &[(&str, &str, &str)] = &[
         "zero vector",
     ),
     (
+        "[[beam]]\ndirection = [0.0, 0.0, 1.0]\ncoefficient = 1e10\n",
+        "6:15: beam[0].coefficient",
+        "1e10 is beyond 1e9",
+    ),
+    (
         "[[beam]]\ntip = [0.0, 0.0, 0.0]\n",
         "4:1: beam[0].direction",
         "required, but missing",

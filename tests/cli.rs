@@ -162,6 +162,17 @@ fn depths_hide_light_or_are_refused_before_anything_is_written() {
         "{by_ray} {by_axis} {open}"
     );
 
+    // What is typed takes the place of the scene's own, which is then not read.
+    let text = std::fs::read_to_string(SCENE).unwrap();
+    let scene = format!("{text}[depth]\nfile = \"nowhere.exr\"\n");
+    std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let draw_own = |depth: &[&str]| {
+        let options = ["render", "scene.toml", "--size", "24x16", "-o", "own.exr"];
+        folder.run(&[&options, depth].concat())
+    };
+    expect(&draw_own(&[]), 3, "depth.file: ");
+    expect(&draw_own(&["--depth", "near.exr"]), 0, "");
+
     let before = folder.names().len();
     for (file, words) in [
         ("nan.exr", "nan.exr: NaN at column 0, row 0"),

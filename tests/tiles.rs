@@ -111,6 +111,19 @@ fn hard_scenes() -> Vec<(&'static str, Scene)> {
     }
     scenes.push(("two cores in one tile", scene));
 
+    // A jump of the slope where the plane through the tip passes the rays' ends.
+    let mut scene = view([-3.0, -3.0, 1.0], [0.0, 0.3, 0.0]);
+    scene.image = ImageSize {
+        width: 256,
+        height: 256,
+    };
+    (scene.camera.near, scene.camera.ray_length) = (0.5, Some(4.0));
+    scene.decay = None;
+    let mut beam = common::beam([0.1, 0.2, -0.1], [2.0, 1.0, 0.5], None);
+    (beam.cap_coefficient, beam.sphere_coefficient) = (Some(0.0), 0.05);
+    scene.beams.push(beam);
+    scenes.push(("a beam without a cap", scene));
+
     let mut scene = usual_view();
     for (column, row) in [(-1.5, 40.0), (130.5, 3.0), (70.0, 75.7)] {
         let center = point_at(&scene, column, row, 3.0);
