@@ -27,13 +27,9 @@ typedef struct {
 // LANES consecutive depths of a row; the tile's last one stands for those beyond.
 floatv depths_from(const TileDepths *const depths, const uint x, const uint y) {
     __global const float *const row = depths->corner + y * depths->width;
-#if LANES == 1
-    return row[x];
-#else
     if (x + LANES <= depths->columns)
-        return JOIN(vload, LANES)(0, row + x);
+        return load_lanes(row + x);
     return gather(row, as_intv(min(x + LANE_NUMBERS, (uintv)(depths->columns - 1u))));
-#endif
 }
 
 // The least and the greatest depth of this work-item's rows.

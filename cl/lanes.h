@@ -111,6 +111,15 @@ void scatter(const floatv value, float *const lanes) {
 #endif
 }
 
+// LANES consecutive values.
+floatv load_lanes(__global const float *const values) {
+#if LANES == 1
+    return values[0];
+#else
+    return JOIN(vload, LANES)(0, values);
+#endif
+}
+
 // One value a lane, from memory that the lanes do not share evenly.
 floatv gather(__global const float *const values, const intv index) {
 #if LANES == 1

@@ -47,9 +47,8 @@ floatv depth_of_pixel(const Screen *const screen, const uintv column, const uint
 
 // Where the depth of a pixel ends its ray (Abe, Watanabe 2010, eq. 13, 14): depths begin at the eye, s at the
 // projection plane.
-INLINE floatv end_by_depth(const Screen *const screen, const Ray *const ray, const uintv column, const uintv row) {
-    const View *const view = screen->view;
-    const finev depth = to_finev(depth_of_pixel(screen, column, row));
+INLINE floatv end_by_depth(const View *const view, const Ray *const ray, const floatv pixel_depth) {
+    const finev depth = to_finev(pixel_depth);
     // |S - eye|, improved by a Newton step: little is left of a ray that ends next to the plane.
     const floatv to_plane = ray->length * inverse(ray->stretch);
     const finev guess = to_finev(to_plane);
@@ -63,9 +62,8 @@ INLINE floatv end_by_depth(const Screen *const screen, const Ray *const ray, con
     return clamp(s, 0.0f, 1.0f);
 }
 
-// The rays through the centres of pixels.
-INLINE Ray ray_through(const Screen *const screen, const uintv column, const uintv row) {
-    const View *const view = screen->view;
+// The rays through the centres of pixels, whatever hides their light.
+INLINE Ray open_ray(const View *const view, const uintv column, const uintv row) {
     const fine3v first = fine3(view->first_pixel, view->first_pixel_rest);
     const fine3v row_step = fine3(view->row_step, view->row_step_rest);
     const fine3v column_step = fine3(view->column_step, view->column_step_rest);
@@ -73,9 +71,14 @@ INLINE Ray ray_through(const Screen *const screen, const uintv column, const uin
     const fine3v origin = fine_fma3(column_step, count_to_finev(column), in_row);
     const float3v toward = from_fine3(origin);
     const floatv stretch = 0.5f * view->ray_length * twice_inverse_sqrt_(dot3(toward, toward));
-    Ray ray = make_ray(origin, origin, stretch, splat(view->ray_length), view->softening2);
+    return make_ray(origin, origin, stretch, splat(view->ray_length), view->softening2);
+}
+
+// The rays through the centres of pixels.
+INLINE Ray ray_through(const Screen *const screen, const uintv column, const uintv row) {
+    Ray ray = open_ray(screen->view, column, row);
 #ifdef DEPTH
-    ray.end = end_by_depth(screen, &ray, column, row);
+    ray.end = end_by_depth(screen->view, &ray, depth_of_pixel(screen, column, row));
 #endif
     return ray;
 }
@@ -92,7 +95,13 @@ INLINE Ray pixel_ray(const Screen *const screen, const uint first) {
         row += is_beyond;
         column -= is_beyond * view->width;
     }
-    return ray_through(screen, column, row);
+    Ray ray = open_ray(view, column, row);
+#ifdef DEPTH
+    const uint left = view->width * view->height - first;
+    const floatv depth = left < LANES ? depth_of_pixel(screen, column, row) : load_lanes(screen->depths + first);
+    ray.end = end_by_depth(view, &ray, depth);
+#endif
+    return ray;
 }
 
 // L(s) - M, M given in two parts. Panels that meet in s meet here too: s is not rounded again.
