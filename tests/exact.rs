@@ -157,30 +157,31 @@ fn through(renderer: &mut Renderer) -> Vec<Row> {
 
 #[test]
 fn the_known_rays_are_met_on_every_lane_width_and_in_every_form() {
-    for lanes in LANE_WIDTHS {
-        for form in [
-            "",
-            "-DPORTABLE_ROOTS",
-            "-DNO_SHUFFLES -DINLINE=",
-            "-DNO_DOUBLES",
-        ] {
-            let rows = through(&mut renderer(lanes, form));
-            assert_eq!(rows.len(), 10 * 16);
-            for row in &rows {
-                assert!(
-                    row.relative_error <= ray_limit(&row.kind),
-                    "{lanes} {form}: {row:?}"
-                );
-            }
-            for kind in rows.chunks(16) {
-                let mut errors: Vec<f64> = kind.iter().map(|row| row.relative_error).collect();
-                errors.sort_by(f64::total_cmp);
-                assert!(
-                    errors[8] <= 1e-4,
-                    "{lanes} {form} {}: {errors:?}",
-                    kind[0].kind
-                );
-            }
+    // Every width as it is built, and every form on one narrow and one wide device: each is a program for each kind.
+    let forms = [
+        "-DPORTABLE_ROOTS",
+        "-DNO_SHUFFLES -DINLINE=",
+        "-DNO_DOUBLES",
+    ];
+    let builds = LANE_WIDTHS.map(|lanes| (lanes, "")).into_iter();
+    let formed = forms.into_iter().flat_map(|form| [(1, form), (8, form)]);
+    for (lanes, form) in builds.chain(formed) {
+        let rows = through(&mut renderer(lanes, form));
+        assert_eq!(rows.len(), 10 * 16);
+        for row in &rows {
+            assert!(
+                row.relative_error <= ray_limit(&row.kind),
+                "{lanes} {form}: {row:?}"
+            );
+        }
+        for kind in rows.chunks(16) {
+            let mut errors: Vec<f64> = kind.iter().map(|row| row.relative_error).collect();
+            errors.sort_by(f64::total_cmp);
+            assert!(
+                errors[8] <= 1e-4,
+                "{lanes} {form} {}: {errors:?}",
+                kind[0].kind
+            );
         }
     }
 }
