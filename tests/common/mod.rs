@@ -4,6 +4,7 @@
 
 pub mod program;
 pub mod random;
+pub mod tile_scenes;
 
 use energywave::image::{DepthAlong, DepthImage};
 use energywave::image::{Difference, compare};
