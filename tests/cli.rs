@@ -186,7 +186,7 @@ fn depths_hide_light_or_are_refused_before_anything_is_written() {
     expect(
         &other_size,
         3,
-        "the depth image has 24x16 pixels, the image 256x256",
+        "near.exr: 24x16 pixels, the image has 256x256",
     );
     expect(
         &draw("out.png", &["--depth-along", "axis"]),

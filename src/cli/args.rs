@@ -1,6 +1,6 @@
 //! What can be typed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use energywave::Error;
@@ -209,15 +209,11 @@ impl Overrides {
                 ),
             });
         }
+        scene.image = self.size.unwrap_or(scene.image);
         if let Some(file) = &self.depth {
-            let along = match self.depth_along {
-                Some(DepthAlongName::Axis) => DepthAlong::Axis,
-                Some(DepthAlongName::Ray) | None => DepthAlong::Ray,
-            };
-            scene.depth = Some(DepthImage::open(file, along)?);
+            scene.depth = Some(self.open_depth(file, scene.image)?);
         }
         let integration = &mut scene.integration;
-        scene.image = self.size.unwrap_or(scene.image);
         integration.divisions = self.divisions.unwrap_or(integration.divisions);
         integration.tolerance = self.tolerance.unwrap_or(integration.tolerance);
         let (asks_simpson, asks_exact) = (
@@ -247,6 +243,26 @@ impl Overrides {
             None => integration.sampling,
         };
         Ok(())
+    }
+
+    /// The image of `--depth`, for an image of this size.
+    fn open_depth(&self, file: &Path, image: ImageSize) -> Result<DepthImage, Error> {
+        let along = match self.depth_along {
+            Some(DepthAlongName::Axis) => DepthAlong::Axis,
+            Some(DepthAlongName::Ray) | None => DepthAlong::Ray,
+        };
+        let depth = DepthImage::open(file, along)?;
+        let size = depth.size();
+        if size != image {
+            return Err(Error::Input {
+                path: file.to_owned(),
+                reason: format!(
+                    "{}x{} pixels, the image has {}x{}; they must be equal",
+                    size.width, size.height, image.width, image.height
+                ),
+            });
+        }
+        Ok(depth)
     }
 }
 
