@@ -390,7 +390,13 @@ fn a_depth_beyond_the_rays_hides_nothing_and_one_before_them_everything() {
         for along in WAYS {
             let mut hidden = scene.clone();
             hidden.depth = Some(depths(&scene, along, |_, _| f64::INFINITY));
-            assert_eq!(renderer.render(&hidden).unwrap(), open);
+            // Another program: its rounding may differ, and with it which tiles are interpolated.
+            let found = difference(&renderer.render(&hidden).unwrap(), &open);
+            let limit = match sampling {
+                Sampling::Pixels => CUT_BY_HAND,
+                Sampling::Tiles => scene.integration.tolerance,
+            };
+            assert!(found.max <= limit, "{sampling:?} {along:?}: {found:?}");
             hidden.depth = Some(depths(&scene, along, |_, _| 0.9 * scene.camera.near));
             let image = renderer.render(&hidden).unwrap();
             let mut pixels = image.as_slice().chunks(4);
