@@ -12,12 +12,13 @@ use opencl3::types::{CL_FALSE, CL_TRUE, cl_mem};
 
 use super::Compute;
 use super::failure::failed;
+use super::handle::Handle;
 use crate::error::{Error, Result};
 
 /// A buffer of `T` in device memory.
 #[derive(Debug)]
 pub struct DeviceBuffer<T> {
-    buffer: Buffer<T>,
+    buffer: Handle<Buffer<T>>,
     len: usize,
 }
 
@@ -53,6 +54,7 @@ impl<T: Pod> DeviceBuffer<T> {
                 &[],
             )
         }
+        .map(Handle::new)
         .map_err(failed(&compute.device.name, "clEnqueueMapBuffer"))?;
         Ok(pointer.cast_const().cast())
     }
@@ -67,6 +69,7 @@ impl<T: Pod> DeviceBuffer<T> {
                 &[],
             )
         }
+        .map(Handle::new)
         .map_err(failed(&compute.device.name, "clEnqueueUnmapMemObject"))?;
         Ok(())
     }
@@ -88,7 +91,10 @@ impl<T: Pod> DeviceBuffer<T> {
         let buffer =
             unsafe { Buffer::create(&compute.context, flags, len, ptr::null_mut::<c_void>()) }
                 .map_err(failed(&device.name, "clCreateBuffer"))?;
-        Ok(Self { buffer, len })
+        Ok(Self {
+            buffer: Handle::new(buffer),
+            len,
+        })
     }
 
     /// Number of elements.
@@ -116,6 +122,7 @@ impl<T: Pod> DeviceBuffer<T> {
                 .queue
                 .enqueue_write_buffer(&mut self.buffer, CL_TRUE, 0, data, &[])
         }
+        .map(Handle::new)
         .map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))?;
         Ok(())
     }
@@ -135,6 +142,7 @@ impl<T: Pod> DeviceBuffer<T> {
                 .queue
                 .enqueue_read_buffer(&self.buffer, CL_TRUE, 0, target, &[])
         }
+        .map(Handle::new)
         .map_err(failed(&compute.device.name, "clEnqueueReadBuffer"))?;
         Ok(())
     }
@@ -182,6 +190,7 @@ impl<T: Pod> DeviceBuffer<T> {
                 &[],
             )
         }
+        .map(Handle::new)
         .map_err(failed(&compute.device.name, call))?;
         Ok(())
     }
@@ -195,6 +204,7 @@ impl<T: Pod> DeviceBuffer<T> {
                 .queue
                 .enqueue_write_buffer(&mut self.buffer, CL_FALSE, 0, data, &[])
         }
+        .map(Handle::new)
         .map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))?;
         Ok(())
     }
@@ -203,7 +213,11 @@ impl<T: Pod> DeviceBuffer<T> {
     ///
     /// # Safety
     /// Until the event is over, the target must neither be used nor freed.
-    pub(super) unsafe fn begin_read(&self, compute: &Compute, target: &mut [T]) -> Result<Event> {
+    pub(super) unsafe fn begin_read(
+        &self,
+        compute: &Compute,
+        target: &mut [T],
+    ) -> Result<Handle<Event>> {
         self.check_len(compute, "clEnqueueReadBuffer", target.len())?;
         // SAFETY: the target is no longer than the buffer; the caller leaves it alone.
         unsafe {
@@ -211,6 +225,7 @@ impl<T: Pod> DeviceBuffer<T> {
                 .queue
                 .enqueue_read_buffer(&self.buffer, CL_FALSE, 0, target, &[])
         }
+        .map(Handle::new)
         .map_err(failed(&compute.device.name, "clEnqueueReadBuffer"))
     }
 
@@ -238,7 +253,7 @@ pub struct Uploaded<T> {
     buffer: Option<DeviceBuffer<T>>,
     /// What the device has, or is about to have: a copy that is under way reads from here.
     contents: Vec<T>,
-    under_way: Option<Event>,
+    under_way: Option<Handle<Event>>,
     /// Whether the device has `contents`, or a copy of them is under way.
     is_valid: bool,
 }
@@ -285,6 +300,7 @@ impl<T: Pod + PartialEq> Uploaded<T> {
                 )
             };
             let name = &compute.device.name;
+            let event = event.map(Handle::new);
             self.under_way = Some(event.map_err(failed(name, "clEnqueueWriteBuffer"))?);
         }
         self.is_valid = true;

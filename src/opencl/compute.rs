@@ -5,14 +5,15 @@ use opencl3::context::Context;
 
 use super::OpenClDevice;
 use super::failure::failed;
+use super::handle::Handle;
 use crate::error::Result;
 
 /// A device ready for work. Its queue runs commands in order.
 #[derive(Debug)]
 pub struct Compute {
     // Dropped in this order: a queue before its context.
-    pub(super) queue: CommandQueue,
-    pub(super) context: Context,
+    pub(super) queue: Handle<CommandQueue>,
+    pub(super) context: Handle<Context>,
     pub(super) device: OpenClDevice,
 }
 
@@ -25,6 +26,7 @@ impl Compute {
         let name = &device.name;
         let context =
             Context::from_device(&device.handle).map_err(failed(name, "clCreateContext"))?;
+        let context = Handle::new(context);
         // SAFETY: the device belongs to the context, which outlives the queue.
         let queue = unsafe {
             #[allow(deprecated)] // the form of OpenCL 1.2, which every driver has
@@ -32,7 +34,7 @@ impl Compute {
         }
         .map_err(failed(name, "clCreateCommandQueue"))?;
         Ok(Self {
-            queue,
+            queue: Handle::new(queue),
             context,
             device: device.clone(),
         })

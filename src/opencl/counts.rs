@@ -6,6 +6,7 @@ use opencl3::event::Event;
 use opencl3::types::cl_mem;
 
 use super::failure::failed;
+use super::handle::Handle;
 use super::{Compute, DeviceBuffer, tiles};
 use crate::error::Result;
 
@@ -30,7 +31,7 @@ pub(super) struct Counts {
     buffer: Option<DeviceBuffer<u32>>,
     /// Where the copy under way goes to.
     values: Box<[u32; LEN]>,
-    under_way: Option<Event>,
+    under_way: Option<Handle<Event>>,
 }
 
 impl Counts {

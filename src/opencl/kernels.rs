@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use opencl3::kernel::Kernel;
 
 use super::Compute;
+use super::handle::Handle;
 use super::program::{BuildOptions, Program};
 use super::tiles;
 use crate::error::{Error, Result};
@@ -69,7 +70,7 @@ impl Variant {
 
 /// Every kernel built so far.
 #[derive(Debug, Default)]
-pub(super) struct Kernels(HashMap<Task, Kernel>);
+pub(super) struct Kernels(HashMap<Task, Handle<Kernel>>);
 
 impl Kernels {
     /// Makes sure of a kernel. `rule` is what the method `exact` integrates with.
@@ -116,7 +117,7 @@ impl Kernels {
     }
 
     /// A kernel that was made sure of.
-    pub(super) fn get(&self, task: Task) -> Result<&Kernel> {
+    pub(super) fn get(&self, task: Task) -> Result<&Handle<Kernel>> {
         self.0.get(&task).ok_or_else(|| {
             Error::Unsupported("a kernel that was never built was launched".to_owned())
         })

@@ -8,6 +8,7 @@ mod counts;
 mod depths;
 mod discover;
 mod failure;
+mod handle;
 mod job;
 mod kernels;
 mod launch;

@@ -13,6 +13,7 @@ use opencl3::program::Program as ClProgram;
 use super::counts::{self, Counts};
 use super::depths::Depths;
 use super::failure::{code_name, failed};
+use super::handle::Handle;
 use super::{Compute, DeviceBuffer, Uploaded, source};
 use crate::error::{Error, Result};
 use crate::pack::{Rule, layout};
@@ -39,7 +40,7 @@ pub struct BuildOptions {
 /// A built program.
 #[derive(Debug)]
 pub struct Program {
-    program: ClProgram,
+    program: Handle<ClProgram>,
     device: String,
     /// Lanes it was built for.
     pub lanes: u32,
@@ -71,6 +72,7 @@ impl Program {
         let device = &compute.device;
         let lanes = options.lanes.unwrap_or(device.lanes);
         let mut program = ClProgram::create_from_source(&compute.context, text)
+            .map(Handle::new)
             .map_err(failed(&device.name, "clCreateProgramWithSource"))?;
         let flags = compiler_flags(lanes, options);
         let refused = |code: String, log: String| Error::Build {
@@ -101,8 +103,10 @@ impl Program {
     ///
     /// # Errors
     /// [`Error::Device`] if there is no such kernel.
-    pub fn kernel(&self, name: &str) -> Result<Kernel> {
-        Kernel::create(&self.program, name).map_err(failed(&self.device, "clCreateKernel"))
+    pub(super) fn kernel(&self, name: &str) -> Result<Handle<Kernel>> {
+        Kernel::create(&self.program, name)
+            .map(Handle::new)
+            .map_err(failed(&self.device, "clCreateKernel"))
     }
 }
 
@@ -201,7 +205,7 @@ pub(super) fn enqueue(
     kernel: &Kernel,
     items: usize,
     group: usize,
-) -> Result<Event> {
+) -> Result<Handle<Event>> {
     let global = items.div_ceil(group) * group;
     // SAFETY: all arguments are set by the caller; the kernels check their index against the count of work.
     unsafe {
@@ -214,6 +218,7 @@ pub(super) fn enqueue(
             &[],
         )
     }
+    .map(Handle::new)
     .map_err(failed(&compute.device.name, "clEnqueueNDRangeKernel"))
 }
 
@@ -245,6 +250,7 @@ impl Program {
     ) -> Result<Duration> {
         let kernel = self.kernel(kernel)?;
         set_arguments(compute, &kernel, arguments)?;
-        run_time(compute, &enqueue(compute, &kernel, items, group)?)
+        let event = enqueue(compute, &kernel, items, group)?;
+        run_time(compute, &event)
     }
 }

@@ -7,6 +7,7 @@ use opencl3::event::Event;
 
 use super::counts::{self, Counts};
 use super::depths::Depths;
+use super::handle::Handle;
 use super::job::Job;
 use super::kernels::{Kernels, Rays, Variant};
 use super::launch::{Pace, Part, launch};
@@ -47,7 +48,7 @@ type Read<'a> = dyn FnMut(&DeviceBuffer<Pixel>, &Compute, Range<usize>) -> Resul
 /// A launch under way.
 struct Launched {
     /// Of each pass.
-    events: Vec<Event>,
+    events: Vec<Handle<Event>>,
     /// If every pixel takes every source.
     integrals: u64,
     /// Samples of fields, or an estimate.

@@ -1,0 +1,71 @@
+//! OpenCL objects whose release may fail in silence: on a lost device it does, and opencl3 then panics.
+
+use std::mem::ManuallyDrop;
+use std::ops::{Deref, DerefMut};
+
+use opencl3::command_queue::{CommandQueue, release_command_queue};
+use opencl3::context::{Context, context::release_context};
+use opencl3::event::{Event, release_event};
+use opencl3::kernel::{Kernel, release_kernel};
+use opencl3::memory::{Buffer, ClMem, release_mem_object};
+use opencl3::program::{Program, release_program};
+
+/// An object of opencl3, released as it does but for the panic.
+#[derive(Debug)]
+pub struct Handle<T: Release>(ManuallyDrop<T>);
+
+/// What is released by a call of OpenCL.
+pub trait Release {
+    /// Gives the reference back.
+    ///
+    /// # Safety
+    /// The object must not be used afterwards.
+    unsafe fn release(&self);
+}
+
+impl<T: Release> Handle<T> {
+    pub(super) fn new(object: T) -> Self {
+        Self(ManuallyDrop::new(object))
+    }
+}
+
+impl<T: Release> Deref for Handle<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.0
+    }
+}
+
+impl<T: Release> DerefMut for Handle<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        &mut self.0
+    }
+}
+
+impl<T: Release> Drop for Handle<T> {
+    fn drop(&mut self) {
+        // SAFETY: nobody else drops the object, and it is not used again.
+        unsafe { self.0.release() };
+    }
+}
+
+macro_rules! released_by {
+    ($([$($generic:ident)?] $type:ty: $release:path),* $(,)?) => {$(
+        impl$(<$generic>)? Release for $type {
+            unsafe fn release(&self) {
+                // SAFETY: the caller owns the reference. A driver that refuses has lost the device: nothing is left to do.
+                let _ = unsafe { $release(self.get()) };
+            }
+        }
+    )*};
+}
+
+released_by!(
+    [] Context: release_context,
+    [] CommandQueue: release_command_queue,
+    [] Program: release_program,
+    [] Kernel: release_kernel,
+    [] Event: release_event,
+    [T] Buffer<T>: release_mem_object,
+);
