@@ -8,7 +8,8 @@ __kernel void render(const View view, const Launch launch, __global const Node *
                      __global const Beam *const restrict beams, __global const Torus *const restrict tori,
                      __global const Curve *const restrict curves,
                      __global const SplinePiece *const restrict spline_pieces, __global uint *const restrict counts,
-                     __global const float *const restrict depths, __global float4 *const restrict image) {
+                     __global const float *const restrict depths,
+                     __global float4 *const restrict pixels IMAGE_PARAMETER) {
     const uint begin = get_global_id(0) * LANES;
     if (begin >= launch.count)
         return;
@@ -18,5 +19,6 @@ __kernel void render(const View view, const Launch launch, __global const Node *
     const Screen screen = {&view, depths};
     const Ray ray = pixel_ray(&screen, launch.first + begin);
     const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch);
-    store_pixels(image + launch.slot + begin, LAST_LANES(launch.count - begin), radiance, launch.accumulate);
+    const Canvas canvas = canvas_of(pixels, &launch, view.width);
+    store_pixels(&canvas, begin, LAST_LANES(launch.count - begin), radiance IMAGE_ARGUMENT);
 }

@@ -1,6 +1,28 @@
 // Writes one RGBA pixel for every lane, alpha 1.
 #pragma once
 #include "lanes.h"
+#include "types.h"
+
+// Where the pixels of a launch go: a buffer, by rows. Built with -D IMAGE, the last launch of a pixel writes it to an
+// image, and the buffer only has what earlier ones have gathered.
+typedef struct {
+    __global float4 *pixels; // from the launch's first on
+    uint first, width;       // its number in the image, and the image's width
+    bool accumulates, is_last;
+} Canvas;
+
+Canvas canvas_of(__global float4 *const buffer, const Launch *const launch, const uint width) {
+    const Canvas canvas = {buffer + launch->slot, launch->first, width, launch->accumulate != 0, launch->is_last != 0};
+    return canvas;
+}
+
+#ifdef IMAGE
+#define IMAGE_PARAMETER , __write_only image2d_t image
+#define IMAGE_ARGUMENT , image
+#else
+#define IMAGE_PARAMETER
+#define IMAGE_ARGUMENT
+#endif
 
 // How many lanes have a pixel, when so many pixels are left.
 #ifndef LAST_LANES
@@ -48,6 +70,19 @@ INLINE void store_all_pixels(__global float4 *const first_half, __global float4 
 #endif
 }
 
+INLINE void store_pixel(const Canvas *const canvas, const uint index, const float4 light IMAGE_PARAMETER) {
+    const float4 before = canvas->accumulates ? canvas->pixels[index] : (float4)(0.0f);
+    const float4 pixel = (float4)((light + before).xyz, 1.0f);
+#ifdef IMAGE
+    if (canvas->is_last) {
+        const int place = (int)(canvas->first + index), width = (int)canvas->width;
+        write_imagef(image, (int2)(place % width, place / width), pixel);
+        return;
+    }
+#endif
+    canvas->pixels[index] = pixel;
+}
+
 // The lanes one by one: pixels of a block of so many columns, `pitch` pixels from one row to the next, of which the
 // image has some.
 typedef struct {
@@ -56,8 +91,8 @@ typedef struct {
     uint columns, rows; // that the image has
 } Clip;
 
-INLINE void store_clipped(__global float4 *const corner, const Clip *const clip, const float3v color,
-                          const uint accumulate) {
+INLINE void store_clipped(const Canvas *const canvas, const uint corner, const Clip *const clip,
+                          const float3v color IMAGE_PARAMETER) {
     float red[LANES], green[LANES], blue[LANES];
     scatter(color.x, red);
     scatter(color.y, green);
@@ -67,21 +102,21 @@ INLINE void store_clipped(__global float4 *const corner, const Clip *const clip,
         const uint row = (clip->first_lane + lane) / clip->block_width;
         if (column >= clip->columns || row >= clip->rows)
             continue;
-        __global float4 *const pixel = corner + row * clip->pitch + column;
-        const float4 before = accumulate ? *pixel : (float4)(0.0f);
-        const float4 light = (float4)(red[lane], green[lane], blue[lane], 0.0f) + before;
-        *pixel = (float4)(light.xyz, 1.0f);
+        const float4 light = (float4)(red[lane], green[lane], blue[lane], 0.0f);
+        store_pixel(canvas, corner + row * clip->pitch + column, light IMAGE_ARGUMENT);
     }
 }
 
-// Writes (or adds to) pixels[0 .. count), count at most LANES.
-INLINE void store_pixels(__global float4 *const pixels, const uint count, const float3v color, const uint accumulate) {
-#ifndef NO_SHUFFLES
-    if (count == LANES && !accumulate) {
+// Writes (or adds to) pixels[begin .. begin + count), count at most LANES.
+INLINE void store_pixels(const Canvas *const canvas, const uint begin, const uint count,
+                         const float3v color IMAGE_PARAMETER) {
+#if !defined(NO_SHUFFLES) && !defined(IMAGE)
+    if (count == LANES && !canvas->accumulates) {
+        __global float4 *const pixels = canvas->pixels + begin;
         store_all_pixels(pixels, pixels + LANES / 2, color);
         return;
     }
 #endif
     const Clip clip = {0, LANES, 0, count, 1};
-    store_clipped(pixels, &clip, color, accumulate);
+    store_clipped(canvas, begin, &clip, color IMAGE_ARGUMENT);
 }

@@ -126,15 +126,15 @@ INLINE TileRays rays_of_tile(const Screen *const screen, const TilePass *const p
 
 // Writes (or adds to) the pixels of a block from the ray of this number on; the image has so many columns and rows of
 // it.
-INLINE void store_block(__global float4 *const corner, const uint ray, const uint pitch, const uint columns,
-                        const uint rows, const float3v color, const uint accumulate) {
-#ifndef NO_SHUFFLES
-    if (columns >= BLOCK_WIDTH && rows >= BLOCK_HEIGHT && !accumulate) {
-        __global float4 *const first = corner + ray / BLOCK_WIDTH * pitch + ray % BLOCK_WIDTH;
-        store_all_pixels(first, first + (LANES == TILE_RAYS ? pitch : LANES / 2), color);
+INLINE void store_block(const Canvas *const canvas, const uint corner, const uint ray, const uint columns,
+                        const uint rows, const float3v color IMAGE_PARAMETER) {
+#if !defined(NO_SHUFFLES) && !defined(IMAGE)
+    if (columns >= BLOCK_WIDTH && rows >= BLOCK_HEIGHT && !canvas->accumulates) {
+        __global float4 *const first = canvas->pixels + corner + ray / BLOCK_WIDTH * canvas->width + ray % BLOCK_WIDTH;
+        store_all_pixels(first, first + (LANES == TILE_RAYS ? canvas->width : LANES / 2), color);
         return;
     }
 #endif
-    const Clip clip = {ray, BLOCK_WIDTH, pitch, columns, rows};
-    store_clipped(corner, &clip, color, accumulate);
+    const Clip clip = {ray, BLOCK_WIDTH, canvas->width, columns, rows};
+    store_clipped(canvas, corner, &clip, color IMAGE_ARGUMENT);
 }

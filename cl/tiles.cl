@@ -15,6 +15,7 @@ typedef struct {
     const TilePass *pass;
     const Sources *sources;
     const Quadrature *quadrature;
+    const Canvas *canvas;
     uint end_row; // of the pixels to paint
 } TileTask;
 
@@ -172,7 +173,7 @@ INLINE float3v open_light_along(const TileTask *const task, const Ray *const ray
 
 // Writes the tile's pixels, in blocks of 16: its light interpolated, and that of the sources that are still open.
 INLINE void paint_tile(const TileTask *const task, const Tile *const tile, const bool is_open,
-                       __local const TileMemory *const memory, __global float4 *const image) {
+                       __local const TileMemory *const memory IMAGE_PARAMETER) {
     const TilePass *const pass = task->pass;
     const uint width = task->screen->view->width;
     uint integrals = 0;
@@ -194,9 +195,8 @@ INLINE void paint_tile(const TileTask *const task, const Tile *const tile, const
                     radiance = add3(radiance, open_light_along(task, &ray, memory, &integrals));
                 }
                 const uint corner = (tile->row + y) * width + tile->column + x;
-                store_block(image + task->launch->slot + (corner - task->launch->first), first_ray(round), width,
-                            width - tile->column - x, task->end_row - tile->row - y, radiance,
-                            task->launch->accumulate);
+                store_block(task->canvas, corner - task->launch->first, first_ray(round), width - tile->column - x,
+                            task->end_row - tile->row - y, radiance IMAGE_ARGUMENT);
             }
         }
     }
@@ -242,7 +242,7 @@ INLINE void leave_open(const TileTask *const task, const Tile *const tile, __loc
 
 // Renders a tile, or leaves it open. In the first pass tiles come row by row, in the others four for each open tile.
 INLINE void render_tile(const TileTask *const task, const uint number, const OpenTiles open,
-                        __local TileMemory *const memory, __global float4 *const image) {
+                        __local TileMemory *const memory IMAGE_PARAMETER) {
     const TilePass *const pass = task->pass;
     const uint width = task->screen->view->width;
     const bool has_parent = pass->level > 0;
@@ -268,7 +268,7 @@ INLINE void render_tile(const TileTask *const task, const uint number, const Ope
     if (is_open && !pass->is_last)
         leave_open(task, &tile, memory, open);
     else
-        paint_tile(task, &tile, is_open, memory, image);
+        paint_tile(task, &tile, is_open, memory IMAGE_ARGUMENT);
 }
 
 __kernel __attribute__((reqd_work_group_size(TILE_WORKERS, 1, 1))) void
@@ -277,15 +277,17 @@ tiles(const View view, const Launch launch, __global const Node *const restrict 
       __global const Beam *const restrict beams, __global const Torus *const restrict tori,
       __global const Curve *const restrict curves, __global const SplinePiece *const restrict spline_pieces,
       __global uint *const restrict counts, __global const float *const restrict depths,
-      __global float4 *const restrict image, const TilePass pass, __global uint *const restrict open_tiles,
-      __global float *const restrict open_light) {
+      __global float4 *const restrict pixels IMAGE_PARAMETER, const TilePass pass,
+      __global uint *const restrict open_tiles, __global float *const restrict open_light) {
     __local TileMemory memory;
     const Sources sources = {spheres, cylinders, beams, tori, curves, spline_pieces};
     const Quadrature quadrature = {nodes, 0, decay_of(&view), view.torus_threshold, view.curve_threshold, counts};
     const OpenTiles open = {open_tiles, open_light};
     const Screen screen = {&view, depths};
-    const TileTask task = {&screen, &launch, &pass, &sources, &quadrature, (launch.first + launch.count) / view.width};
+    const Canvas canvas = canvas_of(pixels, &launch, view.width);
+    const uint end_row = (launch.first + launch.count) / view.width;
+    const TileTask task = {&screen, &launch, &pass, &sources, &quadrature, &canvas, end_row};
     const uint count = pass.level == 0 ? pass.tile_count : 4u * counts[COUNT_OPEN_TILES + pass.level - 1u];
     for (uint number = get_group_id(0); number < count; number += get_num_groups(0))
-        render_tile(&task, number, open, &memory, image);
+        render_tile(&task, number, open, &memory IMAGE_ARGUMENT);
 }

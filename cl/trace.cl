@@ -37,5 +37,6 @@ __kernel void trace(const View view, const Launch launch, __global const Node *c
     const uintv index = min(begin + LANE_NUMBERS, (uintv)(launch.count - 1));
     const Ray ray = listed_ray(rays, launch.first + index, view.softening2);
     const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch);
-    store_pixels(radiances + launch.slot + begin, LAST_LANES(launch.count - begin), radiance, launch.accumulate);
+    const Canvas canvas = canvas_of(radiances, &launch, 0);
+    store_pixels(&canvas, begin, LAST_LANES(launch.count - begin), radiance);
 }

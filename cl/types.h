@@ -36,7 +36,7 @@ typedef struct {
     uint torus_begin, torus_end;
     uint curve_begin, curve_end;
     uint beam_begin, beam_end;
-    uint padding;
+    uint is_last; // 1: no launch adds to these pixels any more
 } Launch;
 
 // One pass over tiles of one size, squares of pixels. The first has the largest, each of the others what the one before

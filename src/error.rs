@@ -54,6 +54,15 @@ pub enum Error {
         advice: &'static str,
     },
 
+    /// Something of a host's OpenCL does not fit. Nothing was enqueued.
+    #[error("the host's {object}: {reason}")]
+    Host {
+        /// What: context, queue, buffer, image or wait list.
+        object: &'static str,
+        /// Why, and what would fit.
+        reason: String,
+    },
+
     /// The device or the host has too little memory.
     #[error("{0}")]
     OutOfMemory(String),

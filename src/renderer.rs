@@ -49,11 +49,11 @@ impl Deref for MappedImage<'_> {
 /// upload only what changed.
 #[derive(Debug)]
 pub struct Renderer {
-    backend: RendererBackend,
+    pub(crate) backend: RendererBackend,
 }
 
 #[derive(Debug)]
-enum RendererBackend {
+pub(crate) enum RendererBackend {
     OpenCl(Box<OpenClRenderer>),
     Reference {
         image: Option<RadianceImage>,

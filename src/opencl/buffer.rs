@@ -2,6 +2,7 @@
 
 use std::ffi::c_void;
 use std::ptr;
+use std::sync::Arc;
 
 use bytemuck::Pod;
 use opencl3::event::Event;
@@ -11,6 +12,7 @@ use opencl3::memory::{
 use opencl3::types::{CL_FALSE, CL_TRUE, cl_mem};
 
 use super::Compute;
+use super::copies::Copies;
 use super::failure::failed;
 use super::handle::Handle;
 use crate::error::{Error, Result};
@@ -196,17 +198,23 @@ impl<T: Pod> DeviceBuffer<T> {
     }
 
     /// Copies `data` to the first elements before the next command of the queue begins, without waiting.
-    pub(super) fn write_static(&mut self, compute: &Compute, data: &'static [T]) -> Result<()> {
+    ///
+    /// # Safety
+    /// Until the event is over, the data must neither be changed nor freed.
+    pub(super) unsafe fn begin_write(
+        &mut self,
+        compute: &Compute,
+        data: &[T],
+    ) -> Result<Handle<Event>> {
         self.check_len(compute, "clEnqueueWriteBuffer", data.len())?;
-        // SAFETY: the data fits into the buffer and is never freed.
+        // SAFETY: the data fits into the buffer; the caller leaves it alone.
         unsafe {
             compute
                 .queue
                 .enqueue_write_buffer(&mut self.buffer, CL_FALSE, 0, data, &[])
         }
         .map(Handle::new)
-        .map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))?;
-        Ok(())
+        .map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))
     }
 
     /// Copies the first elements to `target` after all earlier commands of the queue, without waiting.
@@ -251,9 +259,9 @@ impl<T: Pod> DeviceBuffer<T> {
 pub struct Uploaded<T> {
     what: &'static str,
     buffer: Option<DeviceBuffer<T>>,
-    /// What the device has, or is about to have: a copy that is under way reads from here.
-    contents: Vec<T>,
-    under_way: Option<Handle<Event>>,
+    /// What the device has, or is about to have.
+    contents: Arc<Vec<T>>,
+    copies: Copies<Arc<Vec<T>>>,
     /// Whether the device has `contents`, or a copy of them is under way.
     is_valid: bool,
 }
@@ -264,8 +272,8 @@ impl<T: Pod + PartialEq> Uploaded<T> {
         Self {
             what,
             buffer: None,
-            contents: Vec::new(),
-            under_way: None,
+            contents: Arc::default(),
+            copies: Copies::new(),
             is_valid: false,
         }
     }
@@ -276,48 +284,42 @@ impl<T: Pod + PartialEq> Uploaded<T> {
     /// # Errors
     /// As [`DeviceBuffer::new`] and [`DeviceBuffer::write`], also if an earlier copy failed.
     pub fn upload(&mut self, compute: &Compute, data: &[T]) -> Result<()> {
-        self.settle(compute)?;
-        if self.is_valid && self.contents == data {
+        let earlier = self.copies.reap(compute);
+        self.is_valid &= earlier.is_ok();
+        earlier?;
+        if self.is_valid && *self.contents == data {
             return Ok(());
         }
         self.is_valid = false;
-        self.contents.clear();
-        self.contents.extend_from_slice(data);
+        match Arc::get_mut(&mut self.contents) {
+            Some(contents) => {
+                contents.clear();
+                contents.extend_from_slice(data);
+            }
+            None => self.contents = Arc::new(data.to_vec()), // the old ones are still being copied
+        }
         let buffer = match self.buffer.take() {
             Some(buffer) if buffer.len() >= data.len() => buffer,
             _ => DeviceBuffer::with_flags(compute, self.what, data.len(), CL_MEM_READ_ONLY)?,
         };
         let buffer = self.buffer.insert(buffer);
         if !data.is_empty() {
-            // SAFETY: the data fits into the buffer; `contents` is neither changed nor freed before the event is over.
-            let event = unsafe {
-                compute.queue.enqueue_write_buffer(
-                    &mut buffer.buffer,
-                    CL_FALSE,
-                    0,
-                    &self.contents,
-                    &[],
-                )
-            };
-            let name = &compute.device.name;
-            let event = event.map(Handle::new);
-            self.under_way = Some(event.map_err(failed(name, "clEnqueueWriteBuffer"))?);
+            // SAFETY: the contents are neither changed nor freed while `copies` holds them.
+            let event = unsafe { buffer.begin_write(compute, &self.contents) }?;
+            self.copies.keep(event, Arc::clone(&self.contents));
         }
         self.is_valid = true;
         Ok(())
     }
 
-    /// Waits for a copy under way. Once a launch that reads the list is over, this costs nothing.
+    /// Waits for copies under way.
     ///
     /// # Errors
-    /// [`Error::Device`] if the copy failed; the next upload repeats it.
+    /// [`Error::Device`] if a copy failed; the next upload repeats it.
     pub fn settle(&mut self, compute: &Compute) -> Result<()> {
-        let Some(event) = self.under_way.take() else {
-            return Ok(());
-        };
-        let outcome = event.wait();
-        self.is_valid = outcome.is_ok();
-        outcome.map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))
+        let outcome = self.copies.wait(compute);
+        self.is_valid &= outcome.is_ok();
+        outcome
     }
 
     /// The buffer's handle; null before the first upload.
@@ -325,14 +327,5 @@ impl<T: Pod + PartialEq> Uploaded<T> {
         self.buffer
             .as_ref()
             .map_or(ptr::null_mut(), DeviceBuffer::handle)
-    }
-}
-
-impl<T> Drop for Uploaded<T> {
-    fn drop(&mut self) {
-        if let Some(event) = self.under_way.take() {
-            // The copy reads `contents`: it must be over before they are freed, however it ended.
-            let _ = event.wait();
-        }
     }
 }

@@ -26,7 +26,12 @@ impl Compute {
         let name = &device.name;
         let context =
             Context::from_device(&device.handle).map_err(failed(name, "clCreateContext"))?;
-        let context = Handle::new(context);
+        Self::in_context(Handle::new(context), device)
+    }
+
+    /// A queue of our own in a context that has the device.
+    pub(super) fn in_context(context: Handle<Context>, device: &OpenClDevice) -> Result<Self> {
+        let name = &device.name;
         // SAFETY: the device belongs to the context, which outlives the queue.
         let queue = unsafe {
             #[allow(deprecated)] // the form of OpenCL 1.2, which every driver has

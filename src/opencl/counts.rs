@@ -42,7 +42,10 @@ impl Counts {
             Some(buffer) => buffer,
             None => DeviceBuffer::new(compute, "the counts", LEN)?,
         };
-        self.buffer.insert(buffer).write_static(compute, &[0; LEN])
+        const ZEROS: &[u32; LEN] = &[0; LEN];
+        // SAFETY: constants stay.
+        unsafe { self.buffer.insert(buffer).begin_write(compute, ZEROS) }?;
+        Ok(())
     }
 
     /// Reads the numbers after all earlier commands of the queue.

@@ -4,20 +4,32 @@ use std::ptr;
 
 use opencl3::types::cl_mem;
 
+use super::copies::Copies;
 use super::{Compute, DeviceBuffer};
 use crate::error::Result;
 use crate::image::DepthImage;
 
 /// Uploaded when another image is given.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Depths {
     buffer: Option<DeviceBuffer<f32>>,
     image: Option<DepthImage>,
+    copies: Copies<DepthImage>,
 }
 
 impl Depths {
-    /// Makes the device's depths equal to these; without an image, those there stay.
+    pub(super) fn new() -> Self {
+        Self {
+            buffer: None,
+            image: None,
+            copies: Copies::new(),
+        }
+    }
+
+    /// Makes the device's depths equal to these before the next command of the queue begins; without an image, those
+    /// there stay.
     pub(super) fn upload(&mut self, compute: &Compute, image: Option<&DepthImage>) -> Result<()> {
+        self.check(compute, Copies::reap)?;
         let Some(image) = image else {
             return Ok(());
         };
@@ -31,11 +43,30 @@ impl Depths {
             Some(buffer) if buffer.len() >= len => buffer,
             _ => DeviceBuffer::new(compute, "the depth image", len)?,
         };
-        self.buffer
-            .insert(buffer)
-            .write(compute, image.as_slice())?;
+        let buffer = self.buffer.insert(buffer);
+        // SAFETY: an image's values never change, and `copies` keeps them.
+        let event = unsafe { buffer.begin_write(compute, image.as_slice()) }?;
+        self.copies.keep(event, image.clone());
         self.image = Some(image.clone());
         Ok(())
+    }
+
+    /// Waits for copies under way.
+    pub(super) fn settle(&mut self, compute: &Compute) -> Result<()> {
+        self.check(compute, Copies::wait)
+    }
+
+    /// After a copy that failed, the next upload repeats it.
+    fn check(
+        &mut self,
+        compute: &Compute,
+        look: impl FnOnce(&mut Copies<DepthImage>, &Compute) -> Result<()>,
+    ) -> Result<()> {
+        let outcome = look(&mut self.copies, compute);
+        if outcome.is_err() {
+            self.image = None;
+        }
+        outcome
     }
 
     /// The buffer's handle; null before the first upload.

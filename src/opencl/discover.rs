@@ -87,6 +87,12 @@ pub fn discover() -> Discovery {
     Discovery { devices, problem }
 }
 
+/// The properties of a device that someone else found; `None` if it cannot render.
+pub(super) fn device_of(id: cl_device_id) -> Option<OpenClDevice> {
+    let platform = Platform::new(ClDevice::new(id).platform().ok()?);
+    inspect(&platform, id)
+}
+
 /// A device with a compiler and all properties readable; others cannot render.
 fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
     let handle = ClDevice::new(id);

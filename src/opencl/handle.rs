@@ -7,7 +7,7 @@ use opencl3::command_queue::{CommandQueue, release_command_queue};
 use opencl3::context::{Context, context::release_context};
 use opencl3::event::{Event, release_event};
 use opencl3::kernel::{Kernel, release_kernel};
-use opencl3::memory::{Buffer, ClMem, release_mem_object};
+use opencl3::memory::{Buffer, ClMem, Image, release_mem_object};
 use opencl3::program::{Program, release_program};
 
 /// An object of opencl3, released as it does but for the panic.
@@ -67,5 +67,6 @@ released_by!(
     [] Program: release_program,
     [] Kernel: release_kernel,
     [] Event: release_event,
+    [] Image: release_mem_object,
     [T] Buffer<T>: release_mem_object,
 );

@@ -1,7 +1,8 @@
 //! One frame or one list of rays, packed, with what its launches may take.
 
 use super::kernels::{Rays, Task, Variant};
-use super::launch::{Part, Work, source_count, source_counts};
+use super::launch::Output;
+use super::pace::{Part, Work, source_count, source_counts};
 use super::tiles;
 use crate::pack::{Rule, Sources, layout};
 use crate::scene::{Sampling, Scene};
@@ -17,16 +18,32 @@ pub(super) struct Job {
     first_tile_size: u32,
 }
 
+/// What is integrated.
+pub(super) enum Wanted<'a> {
+    Pixels(Output),
+    Rays(&'a [layout::RayRecord]),
+}
+
+impl Wanted<'_> {
+    pub(super) fn rays(&self) -> Option<&[layout::RayRecord]> {
+        match self {
+            Self::Rays(rays) => Some(rays),
+            Self::Pixels(_) => None,
+        }
+    }
+}
+
 impl Job {
-    /// `is_listed`: single rays instead of an image's; `units`: the device's compute units.
+    /// `units`: the device's compute units.
     pub(super) fn new(
         scene: &Scene,
         rule: Rule,
         view: layout::View,
         sources: Sources,
-        is_listed: bool,
+        wanted: &Wanted<'_>,
         units: u32,
     ) -> Self {
+        let is_listed = wanted.rays().is_some();
         let view = layout::View {
             torus_threshold: rule.torus_threshold,
             curve_threshold: rule.curve_threshold,
@@ -37,6 +54,7 @@ impl Job {
             kinds: source_counts(&sources).map(|count| count > 0),
             has_squares: sources.have_squares(),
             has_depth: scene.depth.is_some() && !is_listed,
+            to_image: matches!(wanted, Wanted::Pixels(Output::Image(_))),
             rays: match scene.sampling() {
                 _ if is_listed => Rays::Listed,
                 Sampling::Tiles if scene.source_count() > 0 => Rays::Tiles,

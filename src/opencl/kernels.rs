@@ -22,6 +22,8 @@ pub(super) struct Task {
     pub has_squares: bool,
     /// Whether depths end the rays.
     pub has_depth: bool,
+    /// Whether pixels go to an image instead of a buffer.
+    pub to_image: bool,
     pub rays: Rays,
 }
 
@@ -94,7 +96,8 @@ impl Kernels {
         let options_of = KIND_OPTIONS.into_iter().zip(task.kinds);
         let squares = (" -D INVERSE_SQUARES", task.has_squares);
         let depth = (" -D DEPTH", task.has_depth);
-        for (option, is_there) in options_of.chain([squares, depth]) {
+        let image = (" -D IMAGE", task.to_image);
+        for (option, is_there) in options_of.chain([squares, depth, image]) {
             if is_there {
                 definitions += option;
             }

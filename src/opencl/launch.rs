@@ -1,266 +1,246 @@
-//! Cuts a frame into launches short enough for a desktop's watchdog and for Ctrl-C, by measured time.
+//! The launches of a frame: how much each takes, what it is given, what is learnt from it.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::time::Duration;
 
-use crate::pack::{Sources, layout};
+use opencl3::event::Event;
+use opencl3::types::cl_mem;
 
-/// What a launch aims at. Desktop systems reset a GPU after a launch of seconds.
-const TARGET: Duration = Duration::from_millis(40);
+use super::copies::state;
+use super::handle::Handle;
+use super::job::Job;
+use super::kernels::{Rays, Variant};
+use super::pace::{Part, launch};
+use super::program::{Argument, RawMemory, enqueue, run_time, set_arguments};
+use super::tiles::{self, OpenTiles};
+use super::{OpenClRenderer, counts};
+use crate::device::DeviceType;
+use crate::error::{Error, Result};
+use crate::pack::layout;
+use crate::renderer::FrameCost;
 
-/// Field evaluations of the first launch, before anything was measured: some milliseconds on one slow core.
-const FIRST_EVALUATIONS: f64 = 4e6;
+/// Where a frame's pixels go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Output {
+    /// The renderer's own buffer.
+    Own,
+    /// A buffer of someone else, for all pixels.
+    Buffer(cl_mem),
+    /// An image of someone else, for all pixels.
+    Image(cl_mem),
+}
 
-/// Growth of the launches from one to the next.
-const MOST_GROWTH: f64 = 16.0;
-
-/// How many field evaluations a launch may have.
+/// A launch under way.
 #[derive(Debug)]
-pub(super) struct Pace {
+pub(super) struct Launched {
+    /// Of each pass.
+    events: Vec<Handle<Event>>,
+    /// If every pixel takes every source.
+    integrals: u64,
+    /// Samples of fields, or an estimate.
     evaluations: f64,
-    kinds: [bool; 5],
 }
 
-impl Pace {
-    pub(super) fn new() -> Self {
-        Self {
-            evaluations: FIRST_EVALUATIONS,
-            kinds: [false; 5],
-        }
+impl OpenClRenderer {
+    /// Begins a frame of so many pixels. The first makes room for the largest launches that may follow.
+    pub(super) fn begin(&mut self, job: &Job, pixels: usize) -> Result<()> {
+        self.pace.begin(&job.sources);
+        self.cost = FrameCost::default();
+        let largest = Part {
+            pixels: 0..job.work.most_pixels().min(pixels as u32),
+            sources: 0..job.work.source_count.min(job.work.most_sources),
+        };
+        self.open_tiles
+            .reserve(&self.compute, &job.passes(&largest))
     }
 
-    /// Begins a frame: what was measured holds for scenes of the same kinds of sources.
-    pub(super) fn begin(&mut self, sources: &Sources) {
-        let kinds = source_counts(sources).map(|count| count > 0);
-        if kinds != self.kinds {
-            *self = Self {
-                kinds,
-                ..Self::new()
-            };
-        }
-    }
-
-    /// Learns from a launch.
-    pub(super) fn measured(&mut self, evaluations: f64, time: Duration) {
-        let possible = evaluations * TARGET.as_secs_f64() / time.as_secs_f64().max(1e-6);
-        if evaluations == 0.0 {
-            return;
-        }
-        // A launch much below the pace says more about the overhead than about the device.
-        if evaluations > 0.1 * self.evaluations || possible < self.evaluations {
-            self.evaluations = possible.clamp(1e4, MOST_GROWTH * self.evaluations);
-        }
-    }
-
-    /// How many of the next `left` pixels to launch: as many as the pace allows with all sources, but not too few.
-    pub(super) fn pixels(&self, work: &Work, left: u32) -> u32 {
-        let evaluations = f64::from(work.node_count) * work.source_count.max(1) as f64;
-        let affordable = self.evaluations / evaluations;
-        let pixels = affordable.min(f64::from(left)) as u32;
-        let grains = pixels.max(work.fewest_pixels).div_ceil(work.grain);
-        let pixels = grains.saturating_mul(work.grain);
-        pixels.min(work.most_pixels()).min(left)
-    }
-
-    /// How many of the next `left` sources to launch on so many pixels: up to twice the pace, rather than a second
-    /// launch for a small rest.
-    pub(super) fn sources(&self, work: &Work, pixels: u32, left: u64) -> u64 {
-        let affordable = self.evaluations / (f64::from(work.node_count) * f64::from(pixels));
-        let left = left.min(work.most_sources);
-        if left as f64 <= 2.0 * affordable {
-            left
-        } else {
-            (affordable as u64).clamp(1, left)
-        }
-    }
-}
-
-impl Work {
-    /// Pixels of a launch at most.
-    pub(super) fn most_pixels(&self) -> u32 {
-        (self.most_pixels / self.grain)
-            .max(1)
-            .saturating_mul(self.grain)
-    }
-}
-
-/// A part of the work: consecutive pixels, and a range of the sources, counted over all kinds.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Part {
-    pub pixels: Range<u32>,
-    pub sources: Range<u64>,
-}
-
-impl Part {
-    /// Samples of fields that it takes.
-    pub(super) fn evaluations(&self, work: &Work) -> f64 {
-        let sources = (self.sources.end - self.sources.start) as f64;
-        self.pixels.len() as f64 * sources * f64::from(work.node_count)
-    }
-}
-
-/// What every pixel of a frame costs.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Work {
-    /// Nodes of the quadrature, or about as many Simpson samples as its cost is worth.
-    pub node_count: u32,
-    /// Sources of all kinds.
-    pub source_count: u64,
-    /// Below this many pixels a launch leaves the device idle.
-    pub fewest_pixels: u32,
-    /// Pixels of a launch are a multiple of this, but for the last one's.
-    pub grain: u32,
-    /// Above this many pixels, and this many sources, a launch takes too much memory.
-    pub most_pixels: u32,
-    pub most_sources: u64,
-}
-
-/// Numbers of spheres, cylinders, beams, tori and curves.
-pub(super) fn source_counts(sources: &Sources) -> [u64; 5] {
-    [
-        sources.spheres.len() as u64,
-        sources.cylinders.len() as u64,
-        sources.beams.len() as u64,
-        sources.tori.len() as u64,
-        sources.curves.len() as u64,
-    ]
-}
-
-pub(super) fn source_count(sources: &Sources) -> u64 {
-    source_counts(sources).iter().sum()
-}
-
-/// Sources of each kind in a part, as ranges of the lists.
-fn ranges(part: &Part, sources: &Sources) -> [Range<u32>; 5] {
-    let mut begin_of_kind = 0;
-    source_counts(sources).map(|count| {
-        let clip =
-            |at: u64| (at.clamp(begin_of_kind, begin_of_kind + count) - begin_of_kind) as u32;
-        let range = clip(part.sources.start)..clip(part.sources.end);
-        begin_of_kind += count;
-        range
-    })
-}
-
-/// Words of 32 sources that hold a bit for each source of a part; each kind begins with a new word.
-pub(super) fn word_count(part: &Part, sources: &Sources) -> u32 {
-    let words = |range: &Range<u32>| (range.len() as u32).div_ceil(32);
-    ranges(part, sources).iter().map(words).sum()
-}
-
-/// The launch struct of a part; `slot` is where its first pixel goes in the output buffer.
-pub(super) fn launch(part: &Part, slot: u32, sources: &Sources, node_count: u32) -> layout::Launch {
-    let [spheres, cylinders, beams, tori, curves] = ranges(part, sources);
-    layout::Launch {
-        first: part.pixels.start,
-        count: part.pixels.end - part.pixels.start,
-        slot,
-        accumulate: u32::from(part.sources.start > 0),
-        node_count,
-        sphere_begin: spheres.start,
-        sphere_end: spheres.end,
-        cylinder_begin: cylinders.start,
-        cylinder_end: cylinders.end,
-        torus_begin: tori.start,
-        torus_end: tori.end,
-        curve_begin: curves.start,
-        curve_end: curves.end,
-        beam_begin: beams.start,
-        beam_end: beams.end,
-        padding: 0,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Every launch of a frame, at a device that does `rate` evaluations a second.
-    fn frame(pixels: u32, work: &Work, rate: f64) -> Vec<Part> {
-        let mut pace = Pace::new();
-        let mut parts = Vec::new();
-        let mut pixel = 0;
-        while pixel < pixels {
-            let end = pixel + pace.pixels(work, pixels - pixel);
+    /// Launches all sources on a band of pixels, one launch at a time: the pace of the next depends on it, and the queue
+    /// stays short. The last one may still be under way.
+    pub(super) fn launch_band(
+        &mut self,
+        job: &Job,
+        band: Range<u32>,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<Option<Launched>> {
+        let mut last = None;
+        let mut pixel = band.start;
+        while pixel < band.end {
+            let pixels = pixel..pixel + self.pace.pixels(&job.work, band.end - pixel);
             let mut source = 0;
             loop {
-                let count = pace.sources(work, end - pixel, work.source_count - source);
-                let part = Part {
-                    pixels: pixel..end,
-                    sources: source..source + count,
-                };
-                let evaluations = part.evaluations(work);
-                pace.measured(evaluations, Duration::from_secs_f64(evaluations / rate));
+                self.settle(job, last.take())?;
+                let part = self.pace.part(&job.work, &pixels, source);
+                last = Some(self.launch(job, &part, pixels.start - band.start, Output::Own)?);
                 source = part.sources.end;
-                parts.push(part);
-                if source >= work.source_count {
+                if source >= job.work.source_count {
                     break;
                 }
             }
-            pixel = end;
+            pixel = pixels.end;
+            if progress(pixel).is_break() {
+                self.settle(job, last)?;
+                return Err(Error::Interrupted);
+            }
         }
-        parts
+        Ok(last)
     }
 
-    #[test]
-    fn launches_cover_every_pixel_and_source_once_and_stay_short() {
-        for (pixels, node_count, source_count, rate) in [
-            (1, 3, 0, 1e9),
-            (512 * 512, 201, 1, 3e9),
-            (16384 * 16384, 201, 3, 1e12),
-            (4097, 65537, 5000, 1e9),
-            (300_000, 201, 1_000_000, 1e11),
-        ] {
-            let work = Work {
-                node_count,
-                source_count,
-                fewest_pixels: 1024,
-                grain: 1,
-                most_pixels: u32::MAX,
-                most_sources: u64::MAX,
-            };
-            let parts = frame(pixels, &work, rate);
-            let covered: f64 = parts
-                .iter()
-                .map(|part| {
-                    part.pixels.len() as f64 * (part.sources.end - part.sources.start) as f64
-                })
-                .sum();
-            assert_eq!(covered, f64::from(pixels) * source_count as f64);
-            let last = parts.last().unwrap();
-            assert_eq!((last.pixels.end, last.sources.end), (pixels, source_count));
-            let longest = parts
-                .iter()
-                .map(|part| part.evaluations(&work) / rate)
-                .fold(0.0, f64::max);
-            let one_source = f64::from(work.node_count * 1024.min(pixels)) / rate;
-            assert!(
-                longest <= (0.1_f64).max(one_source),
-                "{pixels} {source_count}: {longest} s"
-            );
+    /// Launches all sources on all of a frame's pixels without waiting for anything. What is found finished later tells
+    /// the pace.
+    pub(super) fn launch_all(&mut self, job: &Job, pixels: u32, output: Output) -> Result<()> {
+        self.learn()?;
+        self.pace.begin_unwatched(&job.work, pixels);
+        let mut pixel = 0;
+        while pixel < pixels {
+            let next = pixel..pixel + self.pace.pixels(&job.work, pixels - pixel);
+            let mut source = 0;
+            loop {
+                let part = self.pace.part(&job.work, &next, source);
+                let launched = self.launch(job, &part, next.start, output)?;
+                self.cost.launches += launched.events.len() as u32;
+                self.unwatched.push(launched);
+                source = part.sources.end;
+                if source >= job.work.source_count {
+                    break;
+                }
+            }
+            pixel = next.end;
         }
+        Ok(())
     }
 
-    #[test]
-    fn a_range_of_sources_falls_into_its_kinds() {
-        let sources = Sources {
-            spheres: vec![bytemuck::Zeroable::zeroed(); 3],
-            tori: vec![bytemuck::Zeroable::zeroed(); 2],
-            curves: vec![bytemuck::Zeroable::zeroed(); 4],
-            ..Sources::default()
+    /// Learns from launches of earlier frames that are over.
+    fn learn(&mut self) -> Result<()> {
+        let compute = &self.compute;
+        let mut outcome = Ok(());
+        for launched in std::mem::take(&mut self.unwatched) {
+            let states = launched.events.iter().map(|event| state(event));
+            match states.collect::<std::result::Result<Vec<bool>, _>>() {
+                Ok(states) if states.iter().all(|is_over| *is_over) => {
+                    let times = launched.events.iter().map(|e| run_time(compute, e));
+                    let time = times.sum::<Result<Duration>>();
+                    outcome = outcome.and(time.map(|time| {
+                        self.pace.measured(launched.evaluations, time);
+                    }));
+                }
+                Ok(_) => self.unwatched.push(launched),
+                Err(code) => {
+                    let name = &compute.device.name;
+                    let call = "clEnqueueNDRangeKernel";
+                    outcome = outcome.and(Err(super::failure::failed(name, call)(code)));
+                }
+            }
+        }
+        outcome
+    }
+
+    fn launch(&mut self, job: &Job, part: &Part, slot: u32, output: Output) -> Result<Launched> {
+        let passes = job.passes(part);
+        self.open_tiles.reserve(&self.compute, &passes)?;
+        if self.counts_in(job) {
+            self.counts.reset(&self.compute)?;
+        }
+        let launch = launch(part, slot, &job.sources, job.work.node_count);
+        let is_whole = launch.accumulate == 0 && launch.is_last == 1;
+        let pixels = match output {
+            Output::Own => self.output()?.handle(),
+            Output::Buffer(buffer) => buffer,
+            Output::Image(_) if is_whole => std::ptr::null_mut(),
+            Output::Image(_) => {
+                self.reserve_output(job.view.width as usize * job.view.height as usize)?;
+                self.output()?.handle()
+            }
         };
-        let part = Part {
-            pixels: 7..9,
-            sources: 2..6,
+        let (pixels, image) = (RawMemory(pixels), output.image());
+        let lists = &self.lists;
+        let mut common: Vec<&dyn Argument> = vec![
+            &job.view,
+            &launch,
+            &lists.nodes,
+            &lists.spheres,
+            &lists.cylinders,
+            &lists.beams,
+            &lists.tori,
+            &lists.curves,
+            &lists.spline_pieces,
+            &self.counts,
+            &self.depths,
+            &pixels,
+        ];
+        common.extend(image.iter().map(|image| image as &dyn Argument));
+        let kernel = self.kernels.get(job.task)?;
+        let enqueue = |more: &[&dyn Argument], items: usize, group: usize| {
+            set_arguments(&self.compute, kernel, &[&common, more].concat())?;
+            enqueue(&self.compute, kernel, items, group)
         };
-        let launch = launch(&part, 5, &sources, 201);
-        assert_eq!(
-            (launch.first, launch.count, launch.slot, launch.accumulate),
-            (7, 2, 5, 1)
-        );
-        assert_eq!((launch.sphere_begin, launch.sphere_end), (2, 3));
-        assert_eq!((launch.cylinder_begin, launch.cylinder_end), (0, 0));
-        assert_eq!((launch.torus_begin, launch.torus_end), (0, 2));
-        assert_eq!((launch.curve_begin, launch.curve_end), (0, 1));
+        // On PoCL groups of 4 to 64 are equally fast, 128 leave a core idle on small images; one work-item for several
+        // spans of lanes gains nothing.
+        let device = self.device().device_type;
+        let group = match device {
+            DeviceType::Gpu => 64,
+            _ => 16,
+        };
+        let items = part.pixels.len().div_ceil(self.lanes as usize);
+        let OpenTiles { places, light } = &self.open_tiles;
+        let events = match job.task.rays {
+            Rays::Pixels => vec![enqueue(&[], items, group)?],
+            Rays::Listed => vec![enqueue(&[&lists.rays], items, group)?],
+            Rays::Tiles => {
+                let units = self.device().compute_units;
+                let workers = tiles::workers(self.device(), &self.options) as usize;
+                let enqueue = |pass: &layout::TilePass| {
+                    let items = tiles::groups(pass, units) * workers;
+                    enqueue(&[pass, places, light], items, workers)
+                };
+                passes.iter().map(enqueue).collect::<Result<_>>()?
+            }
+        };
+        if self.counts_in(job) && output == Output::Own {
+            self.counts.fetch(&self.compute)?;
+        }
+        Ok(Launched {
+            events,
+            integrals: part.pixels.len() as u64 * (part.sources.end - part.sources.start),
+            evaluations: part.evaluations(&job.work),
+        })
+    }
+
+    /// Whether a job's kernels count.
+    fn counts_in(&self, job: &Job) -> bool {
+        job.task.rays == Rays::Tiles || self.options.counts_nodes
+    }
+
+    /// Waits for a launch and learns from it.
+    pub(super) fn settle(&mut self, job: &Job, launched: Option<Launched>) -> Result<()> {
+        let Some(launched) = launched else {
+            return Ok(());
+        };
+        let mut time = Duration::ZERO;
+        for event in &launched.events {
+            time += run_time(&self.compute, event)?;
+        }
+        self.pace.measured(launched.evaluations, time);
+        let cost = &mut self.cost;
+        cost.kernel += time;
+        cost.launches += launched.events.len() as u32;
+        let counted = self.counts.settle(&self.compute)?;
+        cost.evaluations += match job.task.rays {
+            Rays::Tiles => u64::from(counted[counts::INTEGRALS]),
+            Rays::Pixels | Rays::Listed => launched.integrals,
+        };
+        cost.field_evaluations += match job.task.method {
+            Variant::Simpson => launched.evaluations as u64,
+            Variant::Exact { .. } => u64::from(counted[counts::NODES]),
+        };
+        Ok(())
+    }
+}
+
+impl Output {
+    fn image(self) -> Option<RawMemory> {
+        match self {
+            Self::Image(image) => Some(RawMemory(image)),
+            Self::Own | Self::Buffer(_) => None,
+        }
     }
 }

@@ -53,7 +53,7 @@ impl Lists {
         }
     }
 
-    /// A copy that failed means a wrong image: it is asked for when everything is over.
+    /// Waits for copies under way.
     pub(super) fn settle(&mut self, compute: &Compute) -> Result<()> {
         self.nodes.settle(compute)?;
         self.spheres.settle(compute)?;

@@ -9,6 +9,7 @@ use opencl3::error_codes::ClError;
 use opencl3::event::Event;
 use opencl3::kernel::Kernel;
 use opencl3::program::Program as ClProgram;
+use opencl3::types::cl_mem;
 
 use super::counts::{self, Counts};
 use super::depths::Depths;
@@ -161,6 +162,16 @@ impl Argument for Counts {
     fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError> {
         // SAFETY: as for Uploaded.
         unsafe { kernel.set_arg(index, &self.handle()) }
+    }
+}
+
+/// A buffer or an image by its handle, alive while it is an argument; null where the kernel does not touch it.
+pub(super) struct RawMemory(pub cl_mem);
+
+impl Argument for RawMemory {
+    fn set(&self, kernel: &Kernel, index: u32) -> std::result::Result<(), ClError> {
+        // SAFETY: as for Uploaded.
+        unsafe { kernel.set_arg(index, &self.0) }
     }
 }
 

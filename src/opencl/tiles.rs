@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::launch::{Part, word_count};
+use super::pace::{Part, word_count};
 use super::{BuildOptions, Compute, DeviceBuffer, OpenClDevice};
 use crate::device::DeviceType;
 use crate::error::Result;

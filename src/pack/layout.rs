@@ -73,7 +73,7 @@ device_structs! {
         curve_end: u32 = 48,
         beam_begin: u32 = 52,
         beam_end: u32 = 56,
-        padding: u32 = 60,
+        is_last: u32 = 60,
     }
     /// One pass over tiles of one size.
     TilePass [56] {

@@ -2,6 +2,7 @@
 #![allow(dead_code)] // every test file is a crate of its own and uses its own part
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
 
+pub mod host;
 pub mod occluders;
 pub mod program;
 pub mod random;

@@ -1,0 +1,307 @@
+//! Frames in a host's own OpenCL: its context and queue, its buffer or image, its events.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(unsafe_code)] // hosts call OpenCL
+
+mod common;
+
+use common::host::Host;
+use energywave::opencl::HostTarget;
+use energywave::scene::{Method, Sampling};
+use energywave::{Error, RadianceImage, Renderer, Scene};
+use opencl3::command_queue::{CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE, CL_QUEUE_PROFILING_ENABLE};
+use opencl3::event::{Event, create_user_event, set_user_event_status};
+use opencl3::memory::{
+    Buffer, CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE,
+    CL_MEM_WRITE_ONLY, CL_RGBA, CL_UNSIGNED_INT8, ClMem,
+};
+use opencl3::types::cl_event;
+
+const RUNNING: i32 = 1;
+
+/// Every kind of source, in a size that fits no vector and no tile, by each way to take pixels.
+fn scenes() -> Vec<(&'static str, Scene)> {
+    let full = common::full_scene(99, 70);
+    let with = |method, sampling| {
+        let mut scene = full.clone();
+        scene.integration.method = method;
+        scene.integration.sampling = sampling;
+        scene
+    };
+    vec![
+        ("simpson", with(Method::Simpson, None)),
+        ("pixels", with(Method::Exact, Some(Sampling::Pixels))),
+        ("tiles", with(Method::Exact, Some(Sampling::Tiles))),
+    ]
+}
+
+/// Draws into a target of the host's.
+fn enqueue(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    target: HostTarget,
+    wait_list: &[cl_event],
+) -> energywave::Result<Event> {
+    // SAFETY: the tests keep targets and events until they have waited.
+    unsafe { renderer.enqueue(scene, target, wait_list) }
+}
+
+/// The largest difference of any value, relative to the image's.
+fn difference(found: &[f32], expected: &RadianceImage) -> f32 {
+    let pairs = found.iter().zip(expected.as_slice());
+    assert_eq!(found.len(), expected.as_slice().len());
+    pairs
+        .map(|(a, b)| (a - b).abs() / b.abs().max(1e-3))
+        .fold(0.0, |worst, d| if d <= worst { worst } else { d })
+}
+
+#[test]
+fn buffers_and_float_images_of_a_host_get_the_image_that_is_read_back() {
+    let host = Host::new(0);
+    let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
+    for (name, scene) in scenes() {
+        let size = scene.image;
+        let expected = Renderer::new(&common::device())
+            .unwrap()
+            .render(&scene)
+            .unwrap();
+        let buffer = host.buffer(CL_MEM_READ_WRITE, size);
+        let image = host.image(size, CL_FLOAT);
+        for target in [HostTarget::from(&buffer), HostTarget::from(&image)] {
+            // The third frame has learnt its pace from the first two.
+            for _ in 0..3 {
+                let event = enqueue(&mut renderer, &scene, target, &[]).unwrap();
+                assert_eq!(event.command_queue().unwrap(), host.queue.get());
+                let found = host.read(target, size, &[&event]);
+                assert_eq!(difference(&found, &expected), 0.0, "{name} {target:?}");
+            }
+        }
+        assert_eq!(
+            renderer.render(&scene).unwrap(),
+            expected,
+            "{name}, read back"
+        );
+    }
+}
+
+/// Half has 11 binary digits.
+const HALF_ROUNDING: f32 = 1.0 / 2048.0;
+
+/// Kernels that write images are compiled without the shuffles of those that fill buffers: float32 rounds differently.
+const OTHER_KERNEL: f32 = 2e-4;
+
+#[test]
+fn kernels_write_images_that_the_host_cannot_map_and_halves() {
+    let host = Host::new(0);
+    let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
+    for (name, scene) in scenes() {
+        let size = scene.image;
+        let expected = renderer.render(&scene).unwrap();
+        let flags = CL_MEM_READ_WRITE | CL_MEM_HOST_NO_ACCESS;
+        // A host reads such an image by copying it.
+        let image = host.image_of(flags, size, CL_RGBA, CL_FLOAT);
+        let event = enqueue(&mut renderer, &scene, (&image).into(), &[]).unwrap();
+        let copy = host.copy(&image, size, &event);
+        let found = host.read((&copy).into(), size, &[]);
+        let worst = difference(&found, &expected);
+        assert!(worst <= OTHER_KERNEL, "{name}: {worst}");
+
+        let image = host.image(size, CL_HALF_FLOAT);
+        let event = enqueue(&mut renderer, &scene, (&image).into(), &[]).unwrap();
+        let found = host.read((&image).into(), size, &[&event]);
+        let worst = difference(&found, &expected);
+        assert!(worst <= HALF_ROUNDING + OTHER_KERNEL, "{name}: {worst}");
+        assert!(worst > 1e-5, "these are no halves");
+    }
+}
+
+#[test]
+fn frames_wait_for_the_hosts_events_and_the_call_does_not() {
+    for properties in [
+        0,
+        CL_QUEUE_PROFILING_ENABLE,
+        CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE,
+    ] {
+        let host = Host::new(properties);
+        let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
+        let (_, first) = scenes().swap_remove(2);
+        let mut second = first.clone();
+        second.tori[0].major_radius *= 1.3;
+        second.depth = Some(common::depths(
+            &second,
+            energywave::image::DepthAlong::Ray,
+            |x, _| {
+                if x < 50 { 3.0 } else { f64::INFINITY }
+            },
+        ));
+        let targets = [(); 2].map(|()| host.buffer(CL_MEM_READ_WRITE, first.image));
+        // Kernels are built now: a compiler is waited for.
+        for scene in [&first, &second] {
+            enqueue(&mut renderer, scene, (&targets[1]).into(), &[])
+                .unwrap()
+                .wait()
+                .unwrap();
+        }
+        let gate = Event::new(create_user_event(host.context.get()).unwrap());
+        let one = enqueue(&mut renderer, &first, (&targets[0]).into(), &[gate.get()]).unwrap();
+        // The second has other sources and depths, while the first is still to come.
+        let two = enqueue(&mut renderer, &second, (&targets[1]).into(), &[one.get()]).unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        for event in [&one, &two] {
+            assert!(
+                event.command_execution_status().unwrap().0 >= RUNNING,
+                "did not wait"
+            );
+        }
+        set_user_event_status(gate.get(), 0).unwrap();
+        for (event, scene, target) in [(&one, &first, &targets[0]), (&two, &second, &targets[1])] {
+            let found = host.read(target.into(), scene.image, &[event]);
+            let expected = Renderer::new(&common::device())
+                .unwrap()
+                .render(scene)
+                .unwrap();
+            assert_eq!(difference(&found, &expected), 0.0, "queue {properties}");
+        }
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_before_anything_is_enqueued() {
+    let host = Host::new(0);
+    let other = Host::new(0);
+    let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
+    let scene = common::full_scene(40, 30);
+    let (size, mut wider, mut fewer) = (scene.image, scene.image, scene.image);
+    wider.width += 1;
+    fewer.height -= 1;
+    let null = std::ptr::null_mut();
+    let rgba = |flags, channel_type| host.image_of(flags, size, CL_RGBA, channel_type);
+    let buffer = |flags| host.buffer(flags, size);
+    let (small, foreign) = (
+        host.buffer(CL_MEM_READ_WRITE, fewer),
+        other.buffer(CL_MEM_READ_WRITE, size),
+    );
+    let (read_only, write_only) = (buffer(CL_MEM_READ_ONLY), buffer(CL_MEM_WRITE_ONLY));
+    let (wide, bytes) = (
+        host.image(wider, CL_FLOAT),
+        rgba(CL_MEM_READ_WRITE, CL_UNSIGNED_INT8),
+    );
+    let (read_only_image, foreign_image) = (
+        rgba(CL_MEM_READ_ONLY, CL_FLOAT),
+        other.image(size, CL_FLOAT),
+    );
+    let good = buffer(CL_MEM_READ_WRITE);
+    let refused: [(HostTarget, &str); 12] = [
+        (HostTarget::Buffer(null), "the host's buffer: null"),
+        (HostTarget::Image(null), "the host's image: null"),
+        (
+            (&small).into(),
+            "buffer: 18560 bytes; 40x30 float32 RGBA pixels need 19200",
+        ),
+        ((&foreign).into(), "buffer: it belongs to another context"),
+        (
+            (&read_only).into(),
+            "buffer: kernels may not write it (CL_MEM_READ_ONLY)",
+        ),
+        (
+            (&write_only).into(),
+            "buffer: kernels may not read it (CL_MEM_WRITE_ONLY)",
+        ),
+        (
+            HostTarget::Buffer(wide.get()),
+            "buffer: it is another kind of memory object",
+        ),
+        (
+            HostTarget::Image(good.get()),
+            "image: it is another kind of memory object",
+        ),
+        ((&wide).into(), "image: 41x30 pixels, the scene has 40x30"),
+        (
+            (&bytes).into(),
+            "image: channels of order 0x10b5 and type 0x10da; they must be CL_RGBA",
+        ),
+        (
+            (&read_only_image).into(),
+            "image: kernels may not write it (CL_MEM_READ_ONLY)",
+        ),
+        (
+            (&foreign_image).into(),
+            "image: it belongs to another context",
+        ),
+    ];
+    for (target, words) in refused {
+        let error = enqueue(&mut renderer, &scene, target, &[]).unwrap_err();
+        assert!(matches!(error, Error::Host { .. }), "{error:?}");
+        assert!(
+            error.to_string().contains(words),
+            "{error}\nhas not: {words}"
+        );
+    }
+    let mut refuse = |scene: &Scene, events: &[cl_event], words: &str| {
+        let error = enqueue(&mut renderer, scene, (&good).into(), events).unwrap_err();
+        assert!(
+            error.to_string().contains(words),
+            "{error}\nhas not: {words}"
+        );
+    };
+    let event = Event::new(create_user_event(other.context.get()).unwrap());
+    refuse(
+        &scene,
+        &[event.get()],
+        "wait list: an event of it belongs to another context",
+    );
+    refuse(&scene, &[null], "wait list: it has a null event");
+    let mut invalid = scene.clone();
+    invalid.tori[0].major_radius = -1.0;
+    refuse(&invalid, &[], "torus[0].major_radius");
+
+    let found = enqueue(&mut renderer, &scene, (&good).into(), &[]).unwrap();
+    let found = host.read((&good).into(), size, &[&found]);
+    assert_eq!(difference(&found, &renderer.render(&scene).unwrap()), 0.0);
+
+    let error = Renderer::on_host(&host.context, &other.queue).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("the host's queue: it belongs to another context")
+    );
+    let mut own = Renderer::new(&common::device()).unwrap();
+    let error = enqueue(&mut own, &scene, (&good).into(), &[]).unwrap_err();
+    assert!(error.to_string().contains("made without one"), "{error}");
+}
+
+#[test]
+fn a_host_gets_every_reference_back() {
+    let host = Host::new(0);
+    let scene = common::full_scene(16, 16);
+    let (buffer, image): (Buffer<f32>, _) = (
+        host.buffer(CL_MEM_READ_WRITE, scene.image),
+        host.image(scene.image, CL_FLOAT),
+    );
+    let counts = || {
+        [
+            host.context.reference_count().unwrap(),
+            host.queue.reference_count().unwrap(),
+            buffer.reference_count().unwrap(),
+            image.reference_count().unwrap(),
+        ]
+    };
+    let draw = || {
+        let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
+        for target in [HostTarget::from(&buffer), HostTarget::from(&image)] {
+            let event = enqueue(&mut renderer, &scene, target, &[]).unwrap();
+            event.wait().unwrap();
+        }
+        counts()
+    };
+    draw(); // PoCL 3.1 keeps a reference to the context after the first frame of each kind, once
+    let before = counts();
+    assert!(draw()[0] > before[0], "the context is retained");
+    host.queue.finish().unwrap();
+    // A driver lets go of what is over in a thread of its own.
+    for _ in 0..100 {
+        if counts() != before {
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+    }
+    assert_eq!(counts(), before);
+}
