@@ -3,6 +3,7 @@
 
 mod affinity;
 mod buffer;
+mod cache;
 mod compute;
 mod counts;
 mod depths;
@@ -11,6 +12,7 @@ mod failure;
 mod handle;
 mod job;
 mod kernels;
+mod key;
 mod launch;
 mod lists;
 mod mapped;
@@ -21,8 +23,10 @@ mod tiles;
 
 pub use affinity::keep_pocl_threads_apart;
 pub use buffer::{DeviceBuffer, Uploaded};
+pub use cache::KernelCache;
 pub use compute::Compute;
 pub use discover::{Discovery, OpenClDevice, discover};
+pub use key::ProgramKey;
 pub use mapped::Mapped;
 pub use program::{Argument, BuildOptions, Program};
 pub use renderer::OpenClRenderer;
