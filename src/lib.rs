@@ -58,6 +58,6 @@ pub mod verify;
 pub use device::{Device, DeviceType, Devices};
 pub use error::{Error, Result, SceneError};
 pub use image::{DisplayImage, RadianceImage};
-pub use opencl::BuildOptions;
+pub use opencl::{BuildOptions, KernelCache};
 pub use renderer::{FrameCost, MappedImage, Renderer};
 pub use scene::Scene;

@@ -32,6 +32,8 @@ pub struct OpenClDevice {
     pub device_type: DeviceType,
     /// Name of its platform.
     pub platform: String,
+    /// Version of its platform.
+    pub platform_version: String,
     /// OpenCL version.
     pub version: String,
     /// Driver version.
@@ -99,6 +101,7 @@ fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
     if !handle.available().ok()? || !handle.compiler_available().ok()? {
         return None;
     }
+    let platform_version = platform.version().ok()?;
     let platform = platform.name().ok()?;
     let bits = handle.dev_type().ok()?;
     let device_type = match bits {
@@ -123,6 +126,7 @@ fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
         shares_host_memory: handle.host_unified_memory().unwrap_or(false),
         is_simulator,
         platform,
+        platform_version,
         handle,
     })
 }

@@ -3,6 +3,7 @@
 
 mod affinity;
 mod buffer;
+mod cache;
 mod compute;
 mod copies;
 mod counts;
@@ -14,6 +15,7 @@ mod host;
 mod host_image;
 mod job;
 mod kernels;
+mod key;
 mod launch;
 mod lists;
 mod mapped;
@@ -25,9 +27,11 @@ mod tiles;
 
 pub use affinity::keep_pocl_threads_apart;
 pub use buffer::{DeviceBuffer, Uploaded};
+pub use cache::KernelCache;
 pub use compute::Compute;
 pub use discover::{Discovery, OpenClDevice, discover};
 pub use host::HostTarget;
+pub use key::ProgramKey;
 pub use mapped::Mapped;
 pub use program::{Argument, BuildOptions, Program};
 pub use renderer::OpenClRenderer;

@@ -15,13 +15,16 @@ use super::counts::{self, Counts};
 use super::depths::Depths;
 use super::failure::{code_name, failed};
 use super::handle::Handle;
-use super::{Compute, DeviceBuffer, Uploaded, source};
+use super::{Compute, DeviceBuffer, KernelCache, ProgramKey, Uploaded, source};
 use crate::error::{Error, Result};
 use crate::pack::{Rule, layout};
 use crate::reference::CORE_FLOOR;
 
 /// Environment variable with further options for the kernels' compiler, such as `-D NAME` or `-cl-opt-disable`.
 const OPTIONS_VARIABLE: &str = "ENERGYWAVE_BUILD_OPTIONS";
+
+/// The kind of a cached program binary.
+const BINARY: &str = "bin";
 
 /// How the kernels are built.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -36,6 +39,8 @@ pub struct BuildOptions {
     pub counts_nodes: bool,
     /// Further options for the OpenCL compiler.
     pub extra: String,
+    /// Whether what was built is kept on disk for the next start.
+    pub cache: KernelCache,
 }
 
 /// A built program.
@@ -43,6 +48,7 @@ pub struct BuildOptions {
 pub struct Program {
     program: Handle<ClProgram>,
     device: String,
+    key: ProgramKey,
     /// Lanes it was built for.
     pub lanes: u32,
 }
@@ -72,9 +78,6 @@ impl Program {
     fn build_resolved(compute: &Compute, text: &str, options: &BuildOptions) -> Result<Self> {
         let device = &compute.device;
         let lanes = options.lanes.unwrap_or(device.lanes);
-        let mut program = ClProgram::create_from_source(&compute.context, text)
-            .map(Handle::new)
-            .map_err(failed(&device.name, "clCreateProgramWithSource"))?;
         let flags = compiler_flags(lanes, options);
         let refused = |code: String, log: String| Error::Build {
             device: device.name.clone(),
@@ -87,17 +90,38 @@ impl Program {
                 String::new(),
             ));
         }
+        let key = ProgramKey::new(device, text, &flags);
+        let built = |program| Self {
+            program,
+            device: device.name.clone(),
+            key,
+            lanes,
+        };
+        let folder = options.cache.folder(device);
+        let kept = folder.as_ref().and_then(|folder| folder.read(key, BINARY));
+        if let Some(program) = kept.and_then(|binary| from_binary(compute, &binary, &flags)) {
+            return Ok(built(program));
+        }
+        let mut program = ClProgram::create_from_source(&compute.context, text)
+            .map(Handle::new)
+            .map_err(failed(&device.name, "clCreateProgramWithSource"))?;
         let id = device.handle.id();
         program.build(&[id], &flags).map_err(|ClError(code)| {
             let log = program.get_build_log(id).unwrap_or_default();
             let chosen = format!("LANES={lanes} {}", options.extra);
             refused(format!("{}, {}", code_name(code), chosen.trim()), log)
         })?;
-        Ok(Self {
-            program,
-            device: device.name.clone(),
-            lanes,
-        })
+        if let Some(folder) = folder
+            && let Some(binary) = binary_of(&program)
+        {
+            let _ = folder.write(key, BINARY, &binary); // kept or not, the program is built
+        }
+        Ok(built(program))
+    }
+
+    /// What it was built from and for.
+    pub fn key(&self) -> ProgramKey {
+        self.key
     }
 
     /// One of its kernels.
@@ -109,6 +133,23 @@ impl Program {
             .map(Handle::new)
             .map_err(failed(&self.device, "clCreateKernel"))
     }
+}
+
+/// A program that was built before; `None` where the driver refuses it.
+fn from_binary(compute: &Compute, binary: &[u8], flags: &str) -> Option<Handle<ClProgram>> {
+    let id = compute.device.handle.id();
+    // SAFETY: the device belongs to the context.
+    let created = unsafe { ClProgram::create_from_binary(&compute.context, &[id], &[binary]) };
+    let mut program = created.map(Handle::new).ok()?;
+    program.build(&[id], flags).ok()?;
+    Some(program)
+}
+
+/// What the driver made of a program; `None` in a host's context of several devices, which has several.
+fn binary_of(program: &ClProgram) -> Option<Vec<u8>> {
+    let mut binaries = program.get_binaries().ok()?;
+    let binary = binaries.pop().filter(|_| binaries.is_empty())?;
+    (!binary.is_empty()).then_some(binary)
 }
 
 fn compiler_flags(lanes: u32, options: &BuildOptions) -> String {
