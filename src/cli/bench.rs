@@ -257,7 +257,7 @@ fn prepare(arguments: &BenchArguments) -> Result<(Device, Renderer), super::Fail
         })?;
     }
     let device = choose_device(arguments.device.device.as_deref())?;
-    let renderer = Renderer::new(&device)?;
+    let renderer = Renderer::with_options(&device, &arguments.device.options())?;
     note(&format!("a cell takes {} s", arguments.seconds));
     Ok((device, renderer))
 }

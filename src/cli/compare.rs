@@ -44,7 +44,7 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
         Ok(())
     })?;
     let device = choose_device(arguments.device.device.as_deref())?;
-    let mut renderer = Renderer::new(&device)?;
+    let mut renderer = Renderer::with_options(&device, &arguments.device.options())?;
     catch_interrupts();
     note("the truth is computed in float64 first; --size makes it quicker");
     let mut exact = scene.clone();

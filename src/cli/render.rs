@@ -14,7 +14,7 @@ pub fn run(arguments: RenderArguments) -> Outcome {
     let device = choose_device(arguments.device.device.as_deref())?;
     catch_interrupts();
     let output = Output::create(&arguments.output)?;
-    let mut renderer = Renderer::new(&device)?;
+    let mut renderer = Renderer::with_options(&device, &arguments.device.options())?;
     let mut progress = Progress::new(arguments.quiet);
     let image = renderer.render_with_progress(&scene, &mut |share| progress.report(share))?;
     drop(progress);

@@ -16,12 +16,14 @@ mod host_image;
 mod job;
 mod kernels;
 mod key;
+mod known_scene;
 mod launch;
 mod lists;
 mod mapped;
 mod pace;
 mod program;
 mod renderer;
+mod self_test;
 mod source;
 mod tiles;
 
