@@ -184,7 +184,7 @@ impl OpenClRenderer {
         };
         let output = match (target, &in_place) {
             (HostTarget::Buffer(buffer), _) => Output::Buffer(buffer),
-            (HostTarget::Image(_), Some(image)) => Output::Buffer(image.buffer()),
+            (HostTarget::Image(_), Some(image)) => image.output(),
             (HostTarget::Image(image), None) => Output::Image(image),
         };
         let launched = self.launch_frame(scene, output);
@@ -193,12 +193,6 @@ impl OpenClRenderer {
         }
         launched?;
         self.end()
-    }
-
-    fn launch_frame(&mut self, scene: &Scene, output: Output) -> Result<()> {
-        let job = self.job(scene, output)?;
-        self.begin(&job, scene.image.pixels())?;
-        self.launch_all(&job, scene.image.pixels() as u32, output)
     }
 
     /// The host's queue; an error for a renderer of its own.

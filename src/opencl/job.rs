@@ -1,6 +1,6 @@
 //! One frame or one list of rays, packed, with what its launches may take.
 
-use super::kernels::{Rays, Task, Variant};
+use super::kernels::{Film, Rays, Task, Variant};
 use super::launch::Output;
 use super::pace::{Part, Work, source_count, source_counts};
 use super::tiles;
@@ -54,7 +54,11 @@ impl Job {
             kinds: source_counts(&sources).map(|count| count > 0),
             has_squares: sources.have_squares(),
             has_depth: scene.depth.is_some() && !is_listed,
-            to_image: matches!(wanted, Wanted::Pixels(Output::Image(_))),
+            film: match wanted {
+                Wanted::Pixels(Output::Image(_)) => Film::Image,
+                Wanted::Pixels(Output::Halves(_)) => Film::Halves,
+                Wanted::Pixels(_) | Wanted::Rays(_) => Film::Floats,
+            },
             rays: match scene.sampling() {
                 _ if is_listed => Rays::Listed,
                 Sampling::Tiles if scene.source_count() > 0 => Rays::Tiles,

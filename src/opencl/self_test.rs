@@ -5,6 +5,7 @@ use std::mem;
 use std::ptr;
 
 use glam::DVec3;
+use half::f16;
 use opencl3::memory::{
     CL_FLOAT, CL_MEM_OBJECT_IMAGE2D, CL_MEM_WRITE_ONLY, CL_RGBA, ClMem, Image, cl_image_desc,
     cl_image_format,
@@ -14,10 +15,10 @@ use opencl3::types::CL_TRUE;
 use super::cache::Folder;
 use super::failure::failed;
 use super::handle::Handle;
-use super::kernels::{Rays, Task};
+use super::kernels::{Film, Rays, Task};
 use super::known_scene::known_scene;
 use super::launch::Output;
-use super::{Compute, OpenClRenderer, ProgramKey};
+use super::{Compute, DeviceBuffer, OpenClRenderer, ProgramKey};
 use crate::error::{Error, Result};
 use crate::ray::ViewPlane;
 use crate::reference::Tracer;
@@ -95,26 +96,33 @@ impl OpenClRenderer {
     fn draw_known(&mut self, task: Task, scene: &Scene) -> Result<Vec<[f32; 4]>> {
         let size = scene.image;
         let mut pixels = vec![[0.0; 4]; size.pixels()];
-        if task.rays == Rays::Listed {
-            let plane = ViewPlane::new(&scene.camera, scene.image);
-            let index = 0..size.pixels() as u32;
-            let rays: Vec<_> = index
-                .map(|i| plane.ray(i % size.width, i / size.width))
-                .collect();
-            return self.trace(scene, &rays);
+        match (task.rays, task.film) {
+            (Rays::Listed, _) => {
+                let plane = ViewPlane::new(&scene.camera, size);
+                let index = 0..size.pixels() as u32;
+                let ray = |i| plane.ray(i % size.width, i / size.width);
+                return self.trace(scene, &index.map(ray).collect::<Vec<_>>());
+            }
+            (_, Film::Floats) => {
+                let values = bytemuck::cast_slice_mut(&mut pixels);
+                let nothing = &mut |_: f32| std::ops::ControlFlow::Continue(());
+                self.render_into(scene, values, 4 * size.width as usize, nothing)?;
+            }
+            (_, Film::Halves) => {
+                let halves = DeviceBuffer::new(&self.compute, "the test", 4 * size.pixels())?;
+                self.launch_frame(scene, Output::Halves(halves.handle()))?;
+                let mut values = vec![0_u16; halves.len()];
+                halves.read(&self.compute, &mut values)?;
+                for (channel, bits) in pixels.as_flattened_mut().iter_mut().zip(values) {
+                    *channel = f16::from_bits(bits).into();
+                }
+            }
+            (_, Film::Image) => {
+                let image = create_image(&self.compute, size)?;
+                self.launch_frame(scene, Output::Image(image.get()))?;
+                read_image(&self.compute, &image, size, &mut pixels)?;
+            }
         }
-        if task.to_image {
-            let image = create_image(&self.compute, size)?;
-            let output = Output::Image(image.get());
-            let job = self.job(scene, output)?;
-            self.begin(&job, size.pixels())?;
-            self.launch_all(&job, size.pixels() as u32, output)?;
-            read_image(&self.compute, &image, size, &mut pixels)?;
-            return Ok(pixels);
-        }
-        let values = bytemuck::cast_slice_mut(&mut pixels);
-        let nothing = &mut |_: f32| std::ops::ControlFlow::Continue(());
-        self.render_into(scene, values, 4 * size.width as usize, nothing)?;
         Ok(pixels)
     }
 }
