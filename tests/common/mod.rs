@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
 
 pub mod host;
+#[cfg(unix)] // loads a shared library
+pub mod layer;
 pub mod occluders;
 pub mod program;
 pub mod random;
