@@ -1,6 +1,7 @@
 //! The functions that the layer stands before: each counts, may fail, and else calls the driver.
 
 use std::ffi::c_void;
+use std::mem::transmute;
 use std::ptr;
 use std::sync::OnceLock;
 
@@ -73,9 +74,9 @@ macro_rules! functions {
             #[allow(non_snake_case)] // OpenCL's names
             unsafe extern "C" fn $name($($value: $type),*) -> $answer {
                 let driver = || {
+                    type Function = unsafe extern "C" fn($($type),*) -> $answer;
                     // SAFETY: the function of that place in the table, which has this type.
-                    let function: unsafe extern "C" fn($($type),*) -> $answer =
-                        unsafe { std::mem::transmute(target($place)) };
+                    let function = unsafe { transmute::<*const c_void, Function>(target($place)) };
                     // SAFETY: what the caller gave goes on as it came.
                     unsafe { function($($value),*) }
                 };
