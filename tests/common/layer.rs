@@ -4,6 +4,7 @@
 //! ```text
 //! let layer = Layer::new();                            // first of all; tests of one process run one after another
 //! layer.fail("clEnqueueNDRangeKernel", 2, -5);         // the second next launch fails, once
+//! layer.fail_work("clEnqueueWriteBuffer", 1, -5);      // or: the next copy is taken, and fails in the queue
 //! layer.lose_device(7, -36);                           // or: from the seventh next call on all fail
 //! assert_eq!(layer.disarm(), 1);                       // the device is well again: so many calls have failed
 //! let before = layer.calls("clEnqueue*");              // of any function of that beginning
@@ -73,12 +74,18 @@ impl Layer {
     /// any further letters: "clEnqueue*". A wait, `clFinish` or a release does its work and then answers with the code;
     /// any other call that fails does nothing. A new fault takes the place of the one before.
     pub fn fail(&self, function: &str, nth: u64, code: i32) {
-        self.arm(function, nth, code, false);
+        self.arm(function, nth, code, false, false);
+    }
+
+    /// Lets the command that the `nth` next call of a function enqueues fail with an OpenCL error code: the call goes well,
+    /// the work is not done, and its event says so to who asks. Blocking calls, and those without an event, fail at once.
+    pub fn fail_work(&self, function: &str, nth: u64, code: i32) {
+        self.arm(function, nth, code, true, false);
     }
 
     /// Lets the `nth` next call of any function that the layer knows fail, and all after it.
     pub fn lose_device(&self, nth: u64, code: i32) {
-        self.arm("*", nth, code, true);
+        self.arm("*", nth, code, false, true);
     }
 
     /// Ends the fault: how many calls have failed since it was armed.
@@ -121,13 +128,13 @@ impl Layer {
         finishes(queue)
     }
 
-    fn arm(&self, function: &str, nth: u64, code: i32, stays: bool) {
+    fn arm(&self, function: &str, nth: u64, code: i32, is_late: bool, stays: bool) {
         // SAFETY: the layer's own signature.
-        let arm: unsafe extern "C" fn(*const c_char, u64, i32, bool) -> usize =
+        let arm: unsafe extern "C" fn(*const c_char, u64, i32, bool, bool) -> usize =
             unsafe { self.symbol(c"layer_arm") };
         let name = CString::new(function).unwrap();
         // SAFETY: a C string.
-        let known = unsafe { arm(name.as_ptr(), nth, code, stays) };
+        let known = unsafe { arm(name.as_ptr(), nth, code, is_late, stays) };
         assert!(known > 0, "the layer knows no function {function}");
     }
 

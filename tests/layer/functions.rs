@@ -6,7 +6,7 @@ use std::ptr;
 use std::sync::OnceLock;
 
 use crate::state::Effect::{self, Creates, Enqueues, Finishes, Nothing, Releases, Retains, Waits};
-use crate::state::{Kind, state};
+use crate::state::{Failure, Kind, state};
 use crate::target;
 
 /// Any pointer: the layer looks behind none but those for an error code.
@@ -33,14 +33,24 @@ fn status(place: usize, effect: Effect, driver: impl FnOnce() -> i32) -> i32 {
     let fault = state().begin(place);
     // However these end on a lost device, the work is over and the object is gone: the driver must know.
     let must_go_on = matches!(effect, Releases(_) | Waits | Finishes(_));
-    if let Some(code) = fault.filter(|_| !must_go_on) {
-        return code;
-    }
-    let answer = driver();
+    let answer = match (fault, &effect) {
+        (
+            Some(Failure {
+                code,
+                is_late: true,
+            }),
+            &Enqueues(queue, 0, event),
+        ) if !event.is_null() => take_and_fail(queue, event, code),
+        (Some(Failure { code, .. }), _) if !must_go_on => return code,
+        _ => driver(),
+    };
     if answer == 0 {
         state().done(&effect);
     }
-    fault.unwrap_or(answer)
+    match fault {
+        Some(Failure { code, .. }) if must_go_on => code,
+        _ => answer,
+    }
 }
 
 /// A call that answers with an object or an address, and with a status behind `error`.
@@ -50,7 +60,7 @@ fn object(
     error: *mut i32,
     driver: impl FnOnce() -> Handle,
 ) -> Handle {
-    if let Some(code) = state().begin(place) {
+    if let Some(Failure { code, .. }) = state().begin(place) {
         if !error.is_null() {
             // SAFETY: OpenCL's interface has a place for the status here.
             unsafe { *error = code };
@@ -62,6 +72,34 @@ fn object(
         state().done(&effect);
     }
     answer
+}
+
+/// Takes a command as a driver does, but for an event of its own, which has failed, instead of the work.
+fn take_and_fail(queue: Handle, event: Handle, code: i32) -> i32 {
+    const QUEUE_CONTEXT: u32 = 0x1090;
+    type QueueInfo = unsafe extern "C" fn(P, u32, usize, *mut P, P) -> i32;
+    type CreateUserEvent = unsafe extern "C" fn(P, *mut i32) -> P;
+    type SetUserEventStatus = unsafe extern "C" fn(P, i32) -> i32;
+    let (mut context, mut status) = (ptr::null_mut(), 0);
+    // SAFETY: functions of these types at their places in the table, the caller's queue and its place for an event.
+    unsafe {
+        let info = transmute::<*const c_void, QueueInfo>(target(12));
+        let create = transmute::<*const c_void, CreateUserEvent>(target(84));
+        let set = transmute::<*const c_void, SetUserEventStatus>(target(85));
+        info(
+            queue,
+            QUEUE_CONTEXT,
+            size_of::<P>(),
+            &mut context,
+            ptr::null_mut(),
+        );
+        let failed = create(context, &mut status);
+        if status == 0 {
+            status = set(failed, code);
+            *event.cast::<P>() = failed;
+        }
+    }
+    status
 }
 
 /// Writes the functions and the list of them. A row: the place in the loader's table (the order of `cl_icd.h`), the
@@ -143,76 +181,76 @@ functions! {
     46 clFlush(queue: P) -> i32 { status(Nothing) }
     47 clFinish(queue: P) -> i32 { status(Finishes(queue)) }
     48 clEnqueueReadBuffer(queue: P, buffer: P, blocking: u32, offset: usize, size: usize, host: P, count: u32, waits: P, event: P) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, blocking, event))
     }
     86 clEnqueueReadBufferRect(
         queue: P, buffer: P, blocking: u32, buffer_origin: P, host_origin: P, region: P, buffer_row: usize, buffer_slice: usize,
         host_row: usize, host_slice: usize, host: P, count: u32, waits: P, event: P
     ) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, blocking, event))
     }
     49 clEnqueueWriteBuffer(queue: P, buffer: P, blocking: u32, offset: usize, size: usize, host: P, count: u32, waits: P, event: P) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, blocking, event))
     }
     87 clEnqueueWriteBufferRect(
         queue: P, buffer: P, blocking: u32, buffer_origin: P, host_origin: P, region: P, buffer_row: usize, buffer_slice: usize,
         host_row: usize, host_slice: usize, host: P, count: u32, waits: P, event: P
     ) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, blocking, event))
     }
     50 clEnqueueCopyBuffer(queue: P, from: P, to: P, from_offset: usize, to_offset: usize, size: usize, count: u32, waits: P, event: P) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, 0, event))
     }
     88 clEnqueueCopyBufferRect(
         queue: P, from: P, to: P, from_origin: P, to_origin: P, region: P, from_row: usize, from_slice: usize, to_row: usize,
         to_slice: usize, count: u32, waits: P, event: P
     ) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, 0, event))
     }
     102 clEnqueueFillBuffer(
         queue: P, buffer: P, pattern: P, pattern_size: usize, offset: usize, size: usize, count: u32, waits: P, event: P
     ) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, 0, event))
     }
     51 clEnqueueReadImage(
         queue: P, image: P, blocking: u32, origin: P, region: P, row: usize, slice: usize, host: P, count: u32, waits: P, event: P
     ) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, blocking, event))
     }
     52 clEnqueueWriteImage(
         queue: P, image: P, blocking: u32, origin: P, region: P, row: usize, slice: usize, host: P, count: u32, waits: P, event: P
     ) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, blocking, event))
     }
     53 clEnqueueCopyImage(queue: P, from: P, to: P, from_origin: P, to_origin: P, region: P, count: u32, waits: P, event: P) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, 0, event))
     }
     54 clEnqueueCopyImageToBuffer(queue: P, from: P, to: P, origin: P, region: P, offset: usize, count: u32, waits: P, event: P) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, 0, event))
     }
     55 clEnqueueCopyBufferToImage(queue: P, from: P, to: P, offset: usize, origin: P, region: P, count: u32, waits: P, event: P) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, 0, event))
     }
     56 clEnqueueMapBuffer(
         queue: P, buffer: P, blocking: u32, flags: u64, offset: usize, size: usize, count: u32, waits: P, event: P, error: *mut i32
     ) -> P {
-        object(Enqueues(event), error)
+        object(Enqueues(queue, blocking, event), error)
     }
-    58 clEnqueueUnmapMemObject(queue: P, object: P, pointer: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(event)) }
+    58 clEnqueueUnmapMemObject(queue: P, object: P, pointer: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(queue, 0, event)) }
     59 clEnqueueNDRangeKernel(
         queue: P, kernel: P, dimensions: u32, offset: P, global: P, local: P, count: u32, waits: P, event: P
     ) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, 0, event))
     }
-    60 clEnqueueTask(queue: P, kernel: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(event)) }
-    62 clEnqueueMarker(queue: P, event: P) -> i32 { status(Enqueues(event)) }
+    60 clEnqueueTask(queue: P, kernel: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(queue, 0, event)) }
+    62 clEnqueueMarker(queue: P, event: P) -> i32 { status(Enqueues(queue, 0, event)) }
     63 clEnqueueWaitForEvents(queue: P, count: u32, events: P) -> i32 { status(Nothing) }
     64 clEnqueueBarrier(queue: P) -> i32 { status(Nothing) }
     104 clEnqueueMigrateMemObjects(queue: P, object_count: u32, objects: P, flags: u64, count: u32, waits: P, event: P) -> i32 {
-        status(Enqueues(event))
+        status(Enqueues(queue, 0, event))
     }
-    105 clEnqueueMarkerWithWaitList(queue: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(event)) }
-    106 clEnqueueBarrierWithWaitList(queue: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(event)) }
-    71 clEnqueueAcquireGLObjects(queue: P, object_count: u32, objects: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(event)) }
-    72 clEnqueueReleaseGLObjects(queue: P, object_count: u32, objects: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(event)) }
+    105 clEnqueueMarkerWithWaitList(queue: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(queue, 0, event)) }
+    106 clEnqueueBarrierWithWaitList(queue: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(queue, 0, event)) }
+    71 clEnqueueAcquireGLObjects(queue: P, object_count: u32, objects: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(queue, 0, event)) }
+    72 clEnqueueReleaseGLObjects(queue: P, object_count: u32, objects: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(queue, 0, event)) }
 }

@@ -13,7 +13,7 @@ use std::ffi::{CStr, c_char, c_void};
 use std::ptr;
 
 use functions::{FUNCTIONS, PLACES, TABLES, Tables};
-use state::{Fault, state};
+use state::{Failure, Fault, state};
 
 const SUCCESS: i32 = 0;
 const INVALID_VALUE: i32 = -30;
@@ -82,20 +82,27 @@ extern "C" fn layer_is_loaded() -> bool {
     TABLES.get().is_some()
 }
 
-/// Lets the `nth` next call of these functions fail with a code, and if it `stays` all their later ones too. It takes the
-/// place of an earlier fault. How many functions have the name; `*` at its end stands for any further letters.
+/// Lets the `nth` next call of these functions fail with a code, and if it `stays` all their later ones too; if `is_late`,
+/// what was enqueued fails, not the call. It takes the place of an earlier fault. How many functions have the name; `*` at
+/// its end stands for any further letters.
 ///
 /// # Safety
 /// `names` is a C string.
 #[unsafe(no_mangle)]
-unsafe extern "C" fn layer_arm(names: *const c_char, nth: u64, code: i32, stays: bool) -> usize {
+unsafe extern "C" fn layer_arm(
+    names: *const c_char,
+    nth: u64,
+    code: i32,
+    is_late: bool,
+    stays: bool,
+) -> usize {
     // SAFETY: the caller's promise.
     let places = unsafe { places(names) };
     let count = places.len();
     state().arm(Fault {
         places,
         nth,
-        code,
+        failure: Failure { code, is_late },
         stays,
     });
     count

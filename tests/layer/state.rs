@@ -22,8 +22,8 @@ pub enum Effect {
     Creates(Kind),
     Retains(Kind),
     Releases(Kind),
-    /// With the place for an event, or null.
-    Enqueues(Handle),
+    /// On a queue, blocking or not, with the place for an event or null.
+    Enqueues(Handle, u32, Handle),
     Waits,
     Finishes(Handle),
 }
@@ -34,9 +34,17 @@ pub struct Fault {
     pub places: Vec<usize>,
     /// How many of their calls until it comes, itself included.
     pub nth: u64,
-    pub code: i32,
+    pub failure: Failure,
     /// Whether the calls after it fail too.
     pub stays: bool,
+}
+
+/// How a call fails.
+#[derive(Clone, Copy)]
+pub struct Failure {
+    pub code: i32,
+    /// Whether a command is taken and fails in the queue; calls that do not enqueue one, or wait for it, fail at once.
+    pub is_late: bool,
 }
 
 pub struct State {
@@ -63,8 +71,8 @@ pub fn state() -> MutexGuard<'static, State> {
 }
 
 impl State {
-    /// Counts a call that begins: the code with which it is to fail, if it is.
-    pub fn begin(&mut self, place: usize) -> Option<i32> {
+    /// Counts a call that begins: how it is to fail, if it is.
+    pub fn begin(&mut self, place: usize) -> Option<Failure> {
         self.calls[place] += 1;
         let fault = self.fault.as_mut()?;
         if !fault.places.contains(&place) {
@@ -74,12 +82,12 @@ impl State {
             fault.nth -= 1;
             return None;
         }
-        let code = fault.code;
+        let failure = fault.failure;
         if !fault.stays {
             self.fault = None;
         }
         self.failed += 1;
-        Some(code)
+        Some(failure)
     }
 
     /// Notes what a call did that went well.
@@ -87,7 +95,7 @@ impl State {
         match effect {
             Effect::Creates(kind) | Effect::Retains(kind) => self.live[*kind as usize] += 1,
             Effect::Releases(kind) => self.live[*kind as usize] -= 1,
-            Effect::Enqueues(event) => {
+            Effect::Enqueues(_, _, event) => {
                 self.live[Kind::Event as usize] += i64::from(!event.is_null());
             }
             Effect::Finishes(queue) => *self.finishes.entry(queue.addr()).or_default() += 1,
