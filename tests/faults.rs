@@ -5,6 +5,7 @@
 
 mod common;
 
+use common::alike;
 use common::layer::Layer;
 use energywave::image::DepthAlong;
 use energywave::ray::Ray;
@@ -50,16 +51,6 @@ fn draw(renderer: &mut Renderer, scene: &Scene, way: Way) -> energywave::Result<
             Ok(values.as_flattened().iter().map(|v| *v as f32).collect())
         }
     }
-}
-
-/// Whether two images are one but for what the tolerance allows: launches are cut by measured time, and where they are cut
-/// tells which rays are integrated side by side.
-fn alike(image: &[f32], other: &[f32]) -> bool {
-    let pairs = image.iter().zip(other);
-    image.len() == other.len()
-        && pairs
-            .into_iter()
-            .all(|(a, b)| (a - b).abs() <= 1e-2 * b.abs())
 }
 
 /// A frame with a source of most kinds and with depths. From one to another `step` everything changes that is uploaded.

