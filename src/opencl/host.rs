@@ -188,11 +188,19 @@ impl OpenClRenderer {
             (HostTarget::Image(image), None) => Output::Image(image),
         };
         let launched = self.launch_frame(scene, output);
-        if let Some(image) = in_place {
-            image.unmap(&self.compute, &memory)?;
+        let unmapped = match in_place {
+            Some(image) => image.unmap(&self.compute, &memory),
+            None => Ok(()),
+        };
+        // Also what was launched before a failure draws into the target: what follows on the host's queue waits for it.
+        let ended = self.end();
+        match launched.and(unmapped) {
+            Ok(()) => ended,
+            Err(error) => {
+                drop(ended.map(Handle::new)); // in silence
+                Err(error)
+            }
         }
-        launched?;
-        self.end()
     }
 
     /// The host's queue; an error for a renderer of its own.

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
 
 pub mod host;
+#[cfg(unix)] // loads a shared library
+pub mod layer;
 pub mod occluders;
 pub mod program;
 pub mod random;
@@ -196,6 +198,16 @@ pub fn depths(scene: &Scene, along: DepthAlong, value: impl Fn(u32, u32) -> f64)
 
 pub fn difference(image: &RadianceImage, reference: &RadianceImage) -> Difference {
     compare(image, reference).expect("images of one size")
+}
+
+/// Whether two images are one but for what the tolerance allows: launches are cut by measured time, and where they are cut
+/// tells which rays are integrated side by side.
+pub fn alike(image: &[f32], other: &[f32]) -> bool {
+    let pairs = image.iter().zip(other);
+    image.len() == other.len()
+        && pairs
+            .into_iter()
+            .all(|(a, b)| (a - b).abs() <= 1e-2 * b.abs())
 }
 
 /// What no float32 device can undercut: for 99.9 % of the pixels, and for the worst.
