@@ -5,7 +5,6 @@
 
 mod common;
 
-use common::alike;
 use common::layer::Layer;
 use energywave::image::DepthAlong;
 use energywave::ray::Ray;
@@ -128,19 +127,19 @@ fn fail_every(
     for ([first, second], way) in films.iter().flat_map(|f| WAYS.map(|way| (f, way))) {
         let mut draw = |scene| draw(&mut renderer, scene, way);
         let images = [first, second].map(|scene| draw(scene).unwrap());
-        assert!(!alike(&images[0], &images[1]));
+        assert!(images[0] != images[1]);
         let live = layer.live();
         for nth in 1.. {
-            assert!(alike(&draw(first).unwrap(), &images[0]), "{way:?}, {nth}");
+            assert!(draw(first).unwrap() == images[0], "{way:?}, {nth}");
             fail(&layer, function, nth, code);
             let outcome = draw(second);
             if layer.disarm() == 0 {
-                assert!(alike(&outcome.unwrap(), &images[1]), "{way:?}, {nth}");
+                assert!(outcome.unwrap() == images[1], "{way:?}, {nth}");
                 break;
             }
             let error = outcome.map(drop).unwrap_err();
             expect(&error, &device, calls, code);
-            assert!(alike(&draw(second).unwrap(), &images[1]), "{way:?}, {nth}");
+            assert!(draw(second).unwrap() == images[1], "{way:?}, {nth}");
             assert_eq!(layer.live(), live, "{way:?}, {nth}");
             faults += 1;
         }
@@ -170,7 +169,7 @@ fn fail_first_frames(function: &str, code: i32, right: impl Fn(&Error, u64)) {
             expect(&error, &device, &[""], code);
             right(&error, nth);
             assert!(
-                alike(&draw(&mut renderer, scene, way).unwrap(), &image),
+                draw(&mut renderer, scene, way).unwrap() == image,
                 "{way:?}, {nth}"
             );
             drop(renderer);
@@ -207,7 +206,7 @@ fn the_layer_sees_the_calls_and_an_armed_fault_reaches_a_frame() {
     );
     assert_eq!(launches(), begun.0 + passes + 2);
     let again = draw(&mut renderer, &tiles[0], Way::Image).unwrap();
-    assert!(alike(&again, &image));
+    assert!(again == image);
     drop(renderer);
     assert_eq!(layer.live(), before);
 }
@@ -305,13 +304,10 @@ fn a_mapping_that_could_not_be_ended_is_not_drawn_into() {
         let expected = draw(&mut renderer, &scene, way).unwrap();
         let live = layer.live();
         layer.fail("clEnqueueUnmapMemObject", 1, OUT_OF_RESOURCES);
-        assert!(alike(
-            &draw(&mut renderer, &scene, Way::Mapped).unwrap(),
-            &image
-        ));
+        assert!(draw(&mut renderer, &scene, Way::Mapped).unwrap() == image);
         assert_eq!(layer.disarm(), 1);
         let buffers = layer.calls("clCreateBuffer");
-        assert!(alike(&draw(&mut renderer, &scene, way).unwrap(), &expected));
+        assert!(draw(&mut renderer, &scene, way).unwrap() == expected);
         assert_eq!(
             layer.calls("clCreateBuffer"),
             buffers + 1,
@@ -342,12 +338,12 @@ fn a_device_lost_at_any_call_is_an_error_and_the_renderer_goes_on_when_it_is_bac
             let code = lost_code(nth);
             layer.lose_device(nth, code);
             match draw(second) {
-                Ok(whole) => assert!(alike(&whole, &image), "{way:?}, {nth}"),
+                Ok(whole) => assert!(whole == image, "{way:?}, {nth}"),
                 Err(error) => expect(&error, &device, &["cl"], code),
             }
             expect(&draw(second).map(drop).unwrap_err(), &device, &["cl"], code);
             layer.disarm();
-            assert!(alike(&draw(second).unwrap(), &image), "{way:?}, {nth}");
+            assert!(draw(second).unwrap() == image, "{way:?}, {nth}");
             assert_eq!(layer.live(), live, "{way:?}, {nth}");
         }
     }
@@ -372,7 +368,7 @@ fn a_renderer_may_be_dropped_on_a_lost_device() {
             assert_eq!(layer.live(), before, "{way:?}, {nth}");
         }
         let mut renderer = Renderer::new(&device).unwrap();
-        assert!(alike(&draw(&mut renderer, scene, way).unwrap(), &image));
+        assert!(draw(&mut renderer, scene, way).unwrap() == image);
         let mapped = renderer.render_mapped(scene).unwrap();
         layer.lose_device(1, INVALID_QUEUE);
         drop(mapped);

@@ -7,6 +7,9 @@ use super::tiles;
 use crate::pack::{Rule, Sources, layout};
 use crate::scene::{Sampling, Scene};
 
+/// Launches begin at multiples of this many rays: the same ones are always integrated side by side.
+pub(super) const MOST_LANES: u32 = 16;
+
 #[derive(Debug)]
 pub(super) struct Job {
     pub view: layout::View,
@@ -72,7 +75,7 @@ impl Job {
                 tiles::MOST_PIXELS,
                 tiles::MOST_SOURCES,
             ),
-            Rays::Pixels | Rays::Listed => (1, u32::MAX, u64::MAX),
+            Rays::Pixels | Rays::Listed => (MOST_LANES, u32::MAX, u64::MAX),
         };
         let work = Work {
             node_count: match task.method {

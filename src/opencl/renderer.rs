@@ -7,7 +7,7 @@ use opencl3::command_queue::CommandQueue;
 use super::counts::Counts;
 use super::depths::Depths;
 use super::handle::Handle;
-use super::job::{Job, Wanted};
+use super::job::{Job, MOST_LANES, Wanted};
 use super::kernels::{Kernels, Variant};
 use super::launch::{Launched, Output};
 use super::lists::Lists;
@@ -94,7 +94,7 @@ impl OpenClRenderer {
     ) -> Result<()> {
         let job = self.job(scene, Output::Own)?;
         let row = 4 * scene.image.width as usize;
-        let grain = job.work.grain.max(scene.image.width); // whole rows
+        let grain = job.work.grain.max(MOST_LANES * scene.image.width); // whole rows
         let mut read = |output: &DeviceBuffer<Pixel>, compute: &Compute, band: Range<usize>| {
             let first = band.start / scene.image.width as usize * stride;
             match stride == row {
@@ -138,7 +138,7 @@ impl OpenClRenderer {
             output.read(compute, &mut radiances[band])
         };
         let nothing = &mut |_: f32| ControlFlow::Continue(());
-        self.run(&job, rays.len(), 1, &mut read, nothing)?;
+        self.run(&job, rays.len(), MOST_LANES, &mut read, nothing)?;
         Ok(radiances)
     }
 

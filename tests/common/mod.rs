@@ -200,16 +200,6 @@ pub fn difference(image: &RadianceImage, reference: &RadianceImage) -> Differenc
     compare(image, reference).expect("images of one size")
 }
 
-/// Whether two images are one but for what the tolerance allows: launches are cut by measured time, and where they are cut
-/// tells which rays are integrated side by side.
-pub fn alike(image: &[f32], other: &[f32]) -> bool {
-    let pairs = image.iter().zip(other);
-    image.len() == other.len()
-        && pairs
-            .into_iter()
-            .all(|(a, b)| (a - b).abs() <= 1e-2 * b.abs())
-}
-
 /// What no float32 device can undercut: for 99.9 % of the pixels, and for the worst.
 const MOST_PIXELS: f64 = 2e-5;
 pub const WORST_PIXEL: f64 = 2e-4;
