@@ -7,12 +7,11 @@ mod common;
 use common::host::Host;
 use energywave::opencl::HostTarget;
 use energywave::scene::{Method, Sampling};
-use energywave::{Error, RadianceImage, Renderer, Scene};
+use energywave::{RadianceImage, Renderer, Scene};
 use opencl3::command_queue::{CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE, CL_QUEUE_PROFILING_ENABLE};
 use opencl3::event::{Event, create_user_event, set_user_event_status};
 use opencl3::memory::{
-    Buffer, CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE,
-    CL_MEM_WRITE_ONLY, CL_RGBA, CL_UNSIGNED_INT8, ClMem,
+    Buffer, CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA, ClMem,
 };
 use opencl3::types::cl_event;
 
@@ -166,111 +165,6 @@ fn frames_wait_for_the_hosts_events_and_the_call_does_not() {
             assert_eq!(difference(&found, &expected), 0.0, "queue {properties}");
         }
     }
-}
-
-#[test]
-fn what_does_not_fit_is_refused_before_anything_is_enqueued() {
-    let host = Host::new(0);
-    let other = Host::new(0);
-    let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
-    let scene = common::full_scene(40, 30);
-    let (size, mut wider, mut fewer) = (scene.image, scene.image, scene.image);
-    wider.width += 1;
-    fewer.height -= 1;
-    let null = std::ptr::null_mut();
-    let rgba = |flags, channel_type| host.image_of(flags, size, CL_RGBA, channel_type);
-    let buffer = |flags| host.buffer(flags, size);
-    let (small, foreign) = (
-        host.buffer(CL_MEM_READ_WRITE, fewer),
-        other.buffer(CL_MEM_READ_WRITE, size),
-    );
-    let (read_only, write_only) = (buffer(CL_MEM_READ_ONLY), buffer(CL_MEM_WRITE_ONLY));
-    let (wide, bytes) = (
-        host.image(wider, CL_FLOAT),
-        rgba(CL_MEM_READ_WRITE, CL_UNSIGNED_INT8),
-    );
-    let (read_only_image, foreign_image) = (
-        rgba(CL_MEM_READ_ONLY, CL_FLOAT),
-        other.image(size, CL_FLOAT),
-    );
-    let good = buffer(CL_MEM_READ_WRITE);
-    let refused: [(HostTarget, &str); 12] = [
-        (HostTarget::Buffer(null), "the host's buffer: null"),
-        (HostTarget::Image(null), "the host's image: null"),
-        (
-            (&small).into(),
-            "buffer: 18560 bytes; 40x30 float32 RGBA pixels need 19200",
-        ),
-        ((&foreign).into(), "buffer: it belongs to another context"),
-        (
-            (&read_only).into(),
-            "buffer: kernels may not write it (CL_MEM_READ_ONLY)",
-        ),
-        (
-            (&write_only).into(),
-            "buffer: kernels may not read it (CL_MEM_WRITE_ONLY)",
-        ),
-        (
-            HostTarget::Buffer(wide.get()),
-            "buffer: it is another kind of memory object",
-        ),
-        (
-            HostTarget::Image(good.get()),
-            "image: it is another kind of memory object",
-        ),
-        ((&wide).into(), "image: 41x30 pixels, the scene has 40x30"),
-        (
-            (&bytes).into(),
-            "image: channels of order 0x10b5 and type 0x10da; they must be CL_RGBA",
-        ),
-        (
-            (&read_only_image).into(),
-            "image: kernels may not write it (CL_MEM_READ_ONLY)",
-        ),
-        (
-            (&foreign_image).into(),
-            "image: it belongs to another context",
-        ),
-    ];
-    for (target, words) in refused {
-        let error = enqueue(&mut renderer, &scene, target, &[]).unwrap_err();
-        assert!(matches!(error, Error::Host { .. }), "{error:?}");
-        assert!(
-            error.to_string().contains(words),
-            "{error}\nhas not: {words}"
-        );
-    }
-    let mut refuse = |scene: &Scene, events: &[cl_event], words: &str| {
-        let error = enqueue(&mut renderer, scene, (&good).into(), events).unwrap_err();
-        assert!(
-            error.to_string().contains(words),
-            "{error}\nhas not: {words}"
-        );
-    };
-    let event = Event::new(create_user_event(other.context.get()).unwrap());
-    refuse(
-        &scene,
-        &[event.get()],
-        "wait list: an event of it belongs to another context",
-    );
-    refuse(&scene, &[null], "wait list: it has a null event");
-    let mut invalid = scene.clone();
-    invalid.tori[0].major_radius = -1.0;
-    refuse(&invalid, &[], "torus[0].major_radius");
-
-    let found = enqueue(&mut renderer, &scene, (&good).into(), &[]).unwrap();
-    let found = host.read((&good).into(), size, &[&found]);
-    assert_eq!(difference(&found, &renderer.render(&scene).unwrap()), 0.0);
-
-    let error = Renderer::on_host(&host.context, &other.queue).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .contains("the host's queue: it belongs to another context")
-    );
-    let mut own = Renderer::new(&common::device()).unwrap();
-    let error = enqueue(&mut own, &scene, (&good).into(), &[]).unwrap_err();
-    assert!(error.to_string().contains("made without one"), "{error}");
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Whatever call fails while a frame is enqueued for a host: an error, no panic, the host's queue is never finished, and
-//! its next frame is right.
+//! Whatever call fails while a frame is enqueued for a host, and whatever a host gives that does not fit: an error, no panic,
+//! the host's queue is never finished, and its next frame is right.
 #![allow(clippy::unwrap_used)]
 #![allow(unsafe_code)] // hosts call OpenCL
 #![cfg(unix)] // the OpenCL layer is a shared library
@@ -11,20 +11,26 @@ use std::time::Duration;
 use common::host::Host;
 use common::layer::Layer;
 use energywave::opencl::HostTarget;
-use energywave::{Renderer, Scene};
+use energywave::{Error, Renderer, Scene};
 use opencl3::event::{Event, create_user_event, set_user_event_status};
-use opencl3::memory::CL_MEM_READ_WRITE;
+use opencl3::memory::{
+    CL_FLOAT, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE, CL_MEM_WRITE_ONLY, CL_RGBA, CL_UNSIGNED_INT8,
+    ClMem,
+};
 use opencl3::types::{CL_NON_BLOCKING, cl_event};
 
 const OUT_OF_RESOURCES: i32 = -5;
 
 /// Calls by which a frame is enqueued.
-const CALLS: [&str; 7] = [
+const CALLS: [&str; 10] = [
     "clEnqueueMarkerWithWaitList",
     "clFlush",
     "clEnqueueWriteBuffer",
     "clSetKernelArg",
     "clEnqueueNDRangeKernel",
+    "clEnqueueMapImage",
+    "clEnqueueMapBuffer",
+    "clEnqueueUnmapMemObject",
     "clGetEventInfo",
     "clGetEventProfilingInfo",
 ];
@@ -57,25 +63,29 @@ fn a_call_that_fails_is_an_error_and_the_hosts_next_frame_is_right() {
     let host = Host::new(0);
     let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
     let [first, second] = film();
+    let expected = renderer.render(&second).unwrap();
+    let image = host.image(first.image, CL_FLOAT);
     let buffer = host.buffer(CL_MEM_READ_WRITE, first.image);
-    let target = HostTarget::from(&buffer);
-    let image = renderer.render(&second).unwrap();
-    for call in CALLS {
-        for nth in 1.. {
-            let event = enqueue(&mut renderer, &first, target, &[]).unwrap();
-            event.wait().unwrap();
-            layer.fail(call, nth, OUT_OF_RESOURCES);
-            let outcome = enqueue(&mut renderer, &second, target, &[]);
-            if layer.disarm() == 0 {
-                assert!(nth > 1, "no frame calls {call}");
-                break;
+    for target in [HostTarget::from(&image), HostTarget::from(&buffer)] {
+        let mut draw = |scene| enqueue(&mut renderer, scene, target, &[]);
+        for call in CALLS {
+            for nth in 1.. {
+                draw(&first).unwrap().wait().unwrap();
+                layer.fail(call, nth, OUT_OF_RESOURCES);
+                let outcome = draw(&second);
+                if layer.disarm() == 0 {
+                    let is_for_images = call.to_lowercase().contains("map");
+                    let is_buffer = matches!(target, HostTarget::Buffer(_));
+                    assert!(nth > 1 || is_for_images && is_buffer, "{call}: never");
+                    break;
+                }
+                let words = outcome.map(drop).unwrap_err().to_string();
+                assert!(CALLS.iter().any(|call| words.contains(call)), "{words}");
+                assert!(words.contains(", -5)"), "{words}");
+                let event = draw(&second).unwrap();
+                let found = host.read(target, second.image, &[&event]);
+                assert!(found == expected.as_slice(), "{call}, {nth}");
             }
-            let words = outcome.map(drop).unwrap_err().to_string();
-            assert!(CALLS.iter().any(|call| words.contains(call)), "{words}");
-            assert!(words.contains(", -5)"), "{words}");
-            let event = enqueue(&mut renderer, &second, target, &[]).unwrap();
-            let found = host.read(target, second.image, &[&event]);
-            assert!(found == image.as_slice(), "{call}, {nth}");
         }
     }
     assert_eq!(layer.finishes(host.queue.get()), 0);
@@ -130,4 +140,112 @@ fn what_was_launched_before_a_fault_is_over_before_the_hosts_next_command() {
     set_user_event_status(gate.get(), 0).unwrap();
     std::thread::sleep(Duration::from_millis(100)); // for kernels that nothing waits for
     assert!(host.read(target, scene.image, &[]) == marks);
+}
+
+#[test]
+fn what_does_not_fit_is_refused_before_anything_is_enqueued() {
+    let layer = Layer::new();
+    let (host, other) = (Host::new(0), Host::new(0));
+    let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
+    let scene = common::full_scene(40, 30);
+    let (size, mut wider, mut fewer) = (scene.image, scene.image, scene.image);
+    wider.width += 1;
+    fewer.height -= 1;
+    let null = std::ptr::null_mut();
+    let rgba = |flags, channel_type| host.image_of(flags, size, CL_RGBA, channel_type);
+    let buffer = |flags| host.buffer(flags, size);
+    let (small, foreign) = (
+        host.buffer(CL_MEM_READ_WRITE, fewer),
+        other.buffer(CL_MEM_READ_WRITE, size),
+    );
+    let (read_only, write_only) = (buffer(CL_MEM_READ_ONLY), buffer(CL_MEM_WRITE_ONLY));
+    let (wide, bytes) = (
+        host.image(wider, CL_FLOAT),
+        rgba(CL_MEM_READ_WRITE, CL_UNSIGNED_INT8),
+    );
+    let (read_only_image, foreign_image) = (
+        rgba(CL_MEM_READ_ONLY, CL_FLOAT),
+        other.image(size, CL_FLOAT),
+    );
+    let good = buffer(CL_MEM_READ_WRITE);
+    let before = layer.calls("clEnqueue*");
+    let refused: [(HostTarget, &str); 12] = [
+        (HostTarget::Buffer(null), "the host's buffer: null"),
+        (HostTarget::Image(null), "the host's image: null"),
+        (
+            (&small).into(),
+            "buffer: 18560 bytes; 40x30 float32 RGBA pixels need 19200",
+        ),
+        ((&foreign).into(), "buffer: it belongs to another context"),
+        (
+            (&read_only).into(),
+            "buffer: kernels may not write it (CL_MEM_READ_ONLY)",
+        ),
+        (
+            (&write_only).into(),
+            "buffer: kernels may not read it (CL_MEM_WRITE_ONLY)",
+        ),
+        (
+            HostTarget::Buffer(wide.get()),
+            "buffer: it is another kind of memory object",
+        ),
+        (
+            HostTarget::Image(good.get()),
+            "image: it is another kind of memory object",
+        ),
+        ((&wide).into(), "image: 41x30 pixels, the scene has 40x30"),
+        (
+            (&bytes).into(),
+            "image: channels of order 0x10b5 and type 0x10da; they must be CL_RGBA",
+        ),
+        (
+            (&read_only_image).into(),
+            "image: kernels may not write it (CL_MEM_READ_ONLY)",
+        ),
+        (
+            (&foreign_image).into(),
+            "image: it belongs to another context",
+        ),
+    ];
+    for (target, words) in refused {
+        let error = enqueue(&mut renderer, &scene, target, &[]).unwrap_err();
+        assert!(matches!(error, Error::Host { .. }), "{error:?}");
+        assert!(
+            error.to_string().contains(words),
+            "{error}\nhas not: {words}"
+        );
+    }
+    let mut refuse = |scene: &Scene, events: &[cl_event], words: &str| {
+        let error = enqueue(&mut renderer, scene, (&good).into(), events).unwrap_err();
+        assert!(
+            error.to_string().contains(words),
+            "{error}\nhas not: {words}"
+        );
+    };
+    let event = Event::new(create_user_event(other.context.get()).unwrap());
+    refuse(
+        &scene,
+        &[event.get()],
+        "wait list: an event of it belongs to another context",
+    );
+    refuse(&scene, &[null], "wait list: it has a null event");
+    let mut invalid = scene.clone();
+    invalid.tori[0].major_radius = -1.0;
+    refuse(&invalid, &[], "torus[0].major_radius");
+
+    assert_eq!(layer.calls("clEnqueue*"), before);
+    let event = enqueue(&mut renderer, &scene, (&good).into(), &[]).unwrap();
+    assert!(layer.calls("clEnqueue*") > before);
+    let found = host.read((&good).into(), size, &[&event]);
+    assert!(found == renderer.render(&scene).unwrap().as_slice());
+
+    let error = Renderer::on_host(&host.context, &other.queue).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("the host's queue: it belongs to another context")
+    );
+    let mut own = Renderer::new(&common::device()).unwrap();
+    let error = enqueue(&mut own, &scene, (&good).into(), &[]).unwrap_err();
+    assert!(error.to_string().contains("made without one"), "{error}");
 }

@@ -236,6 +236,11 @@ functions! {
     ) -> P {
         object(Enqueues(queue, blocking, event), error)
     }
+    57 clEnqueueMapImage(
+        queue: P, image: P, blocking: u32, flags: u64, origin: P, region: P, row: P, slice: P, count: u32, waits: P, event: P, error: *mut i32
+    ) -> P {
+        object(Enqueues(queue, blocking, event), error)
+    }
     58 clEnqueueUnmapMemObject(queue: P, object: P, pointer: P, count: u32, waits: P, event: P) -> i32 { status(Enqueues(queue, 0, event)) }
     59 clEnqueueNDRangeKernel(
         queue: P, kernel: P, dimensions: u32, offset: P, global: P, local: P, count: u32, waits: P, event: P
