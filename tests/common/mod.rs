@@ -47,9 +47,6 @@ pub fn compute() -> Compute {
     Compute::new(device).unwrap()
 }
 
-/// What the kernels need to hold every kind of source.
-pub const ALL_KINDS: &str = "-D SPHERES -D CYLINDERS -D BEAMS -D TORI -D CURVES";
-
 pub fn options(lanes: u32, extra: &str) -> BuildOptions {
     BuildOptions {
         lanes: Some(lanes),
