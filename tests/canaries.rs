@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{LANE_WIDTHS, full_scene};
+use common::{full_scene, lane_widths};
 use energywave::opencl::{Argument, DeviceBuffer, Program};
 use energywave::pack::{self, Rule, Sources, layout};
 use energywave::ray::ViewPlane;
@@ -120,7 +120,7 @@ fn to_half(value: f32) -> u16 {
 fn nothing_is_written_behind_the_image() {
     let exact = Rule::of(&Integration::default(), false).definitions();
     let tiles = format!("{exact} -D PER_RAY= -D MOST_WORDS=4 -D TILE_WORKERS=1");
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         for (kernel, method) in [("render", ""), ("render", &exact), ("tiles", &tiles)] {
             for size in [(1, 1), (13, 7), (16, 4), (31, 1)] {
                 for film in ["", "-D HALVES"] {
