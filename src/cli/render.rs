@@ -1,20 +1,20 @@
 //! `energywave render`: a scene file to an image file.
 
 use energywave::image::{Output, OutputFormat};
-use energywave::{Error, Renderer, Scene};
+use energywave::{Error, Scene};
 
 use super::args::RenderArguments;
 use super::progress::{Progress, catch_interrupts, was_interrupted};
-use super::{Outcome, choose_device};
+use super::{Outcome, choose_devices, open};
 
 pub fn run(arguments: RenderArguments) -> Outcome {
     OutputFormat::of(&arguments.output)?;
     let overrides = &arguments.overrides;
     let scene = Scene::from_file_with(&arguments.scene, |scene| overrides.apply(scene))?;
-    let device = choose_device(arguments.device.device.as_deref())?;
+    let devices = choose_devices(arguments.device.device.as_deref())?;
     catch_interrupts();
     let output = Output::create(&arguments.output)?;
-    let mut renderer = Renderer::new(&device)?;
+    let mut renderer = open(&devices)?;
     let mut progress = Progress::new(arguments.quiet);
     let image = renderer.render_with_progress(&scene, &mut |share| progress.report(share))?;
     drop(progress);

@@ -2,31 +2,28 @@
 
 use std::collections::BTreeSet;
 
-use energywave::Renderer;
 use energywave::scene::Method;
 use energywave::verify::{KnownRay, Row, built_in_rays, rays_from_file, verify};
+use energywave::{Device, Renderer};
 
 use super::args::VerifyArguments;
-use super::{Failure, Outcome, choose_device, note, print, print_json};
+use super::{Failure, Outcome, choose_devices, note, print, print_json};
 
 pub fn run(arguments: &VerifyArguments) -> Outcome {
     let rays = match &arguments.rays {
         Some(path) => rays_from_file(path)?,
         None => built_in_rays()?,
     };
-    let device = choose_device(arguments.device.device.as_deref())?;
-    let mut renderer = Renderer::new(&device)?;
+    let devices = choose_devices(arguments.device.device.as_deref())?;
     name_unknown_kinds(&rays);
     let mut rows = Vec::new();
-    for method in [Method::Simpson, Method::Exact] {
-        let tolerance = arguments.tolerance;
-        rows.extend(verify(
-            &mut renderer,
-            &device.name,
-            &rays,
-            method,
-            tolerance,
-        )?);
+    for device in &devices {
+        let mut renderer = Renderer::new(device)?;
+        let name = name_among(device, &devices);
+        for method in [Method::Simpson, Method::Exact] {
+            let tolerance = arguments.tolerance;
+            rows.extend(verify(&mut renderer, &name, &rays, method, tolerance)?);
+        }
     }
     if arguments.json {
         print_json(&rows)?;
@@ -34,6 +31,14 @@ pub fn run(arguments: &VerifyArguments) -> Outcome {
         print(&table(&rows))?;
     }
     judge(&rows)
+}
+
+/// Where there are several, with its index: equal devices have equal names.
+fn name_among(device: &Device, devices: &[Device]) -> String {
+    match devices {
+        [_] => device.name.clone(),
+        _ => format!("{}: {}", device.index, device.name),
+    }
 }
 
 fn name_unknown_kinds(rays: &[KnownRay]) {

@@ -33,6 +33,21 @@ impl Wanted<'_> {
     }
 }
 
+/// The rays side by side in a vector share their quadrature: launches begin where a vector does.
+const MOST_LANES: u32 = 16;
+
+/// An image that is cut at multiples of so many rows is the same to the bit as in one piece.
+pub(crate) fn grain_rows(scene: &Scene) -> u32 {
+    match has_tiles(scene) {
+        true => tiles::first_size(scene.image),
+        false => MOST_LANES >> scene.image.width.trailing_zeros().min(4),
+    }
+}
+
+fn has_tiles(scene: &Scene) -> bool {
+    scene.sampling() == Sampling::Tiles && scene.source_count() > 0
+}
+
 impl Job {
     /// `units`: the device's compute units.
     pub(super) fn new(
@@ -55,10 +70,10 @@ impl Job {
             has_squares: sources.have_squares(),
             has_depth: scene.depth.is_some() && !is_listed,
             to_image: matches!(wanted, Wanted::Pixels(Output::Image(_))),
-            rays: match scene.sampling() {
+            rays: match has_tiles(scene) {
                 _ if is_listed => Rays::Listed,
-                Sampling::Tiles if scene.source_count() > 0 => Rays::Tiles,
-                Sampling::Pixels | Sampling::Tiles => Rays::Pixels,
+                true => Rays::Tiles,
+                false => Rays::Pixels,
             },
         };
         let first_tile_size = tiles::first_size(scene.image);
@@ -68,7 +83,7 @@ impl Job {
                 tiles::MOST_PIXELS,
                 tiles::MOST_SOURCES,
             ),
-            Rays::Pixels | Rays::Listed => (1, u32::MAX, u64::MAX),
+            Rays::Pixels | Rays::Listed => (MOST_LANES, u32::MAX, u64::MAX),
         };
         let work = Work {
             node_count: match task.method {

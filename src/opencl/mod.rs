@@ -31,6 +31,7 @@ pub use cache::KernelCache;
 pub use compute::Compute;
 pub use discover::{Discovery, OpenClDevice, discover};
 pub use host::HostTarget;
+pub(crate) use job::grain_rows;
 pub use key::ProgramKey;
 pub use mapped::Mapped;
 pub use program::{Argument, BuildOptions, Program};
@@ -53,12 +54,15 @@ mod tests {
             let mut device = discover().devices.swap_remove(0);
             device.max_allocation_bytes = bytes;
             let mut renderer = OpenClRenderer::new(&device, &BuildOptions::default()).unwrap();
-            for stride in [400, 401] {
+            for (stride, cut) in [(400, 0), (401, 0), (400, 64)] {
                 let mut target = vec![0.0; 96 * stride];
                 let nothing = &mut |_: f32| ControlFlow::Continue(());
-                renderer
-                    .render_into(&scene, &mut target, stride, nothing)
-                    .unwrap();
+                let (upper, lower) = target.split_at_mut(cut as usize * stride);
+                for (rows, part) in [(0..cut, upper), (cut..96, lower)] {
+                    renderer
+                        .render_rows(&scene, rows, part, stride, nothing)
+                        .unwrap();
+                }
                 let rows = target.chunks(stride).map(|row| row[..400].to_vec());
                 images.push(rows.collect::<Vec<_>>());
             }

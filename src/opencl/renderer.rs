@@ -1,13 +1,14 @@
 //! Renders scenes on an OpenCL device: uploads what changed, launches the kernels, reads the image back.
 
 use std::ops::{ControlFlow, Range};
+use std::time::{Duration, Instant};
 
 use opencl3::command_queue::CommandQueue;
 
 use super::counts::Counts;
 use super::depths::Depths;
 use super::handle::Handle;
-use super::job::{Job, Wanted};
+use super::job::{Job, Wanted, grain_rows};
 use super::kernels::{Kernels, Variant};
 use super::launch::{Launched, Output};
 use super::lists::Lists;
@@ -83,29 +84,36 @@ impl OpenClRenderer {
         self.compute.device()
     }
 
-    /// Renders a valid scene into `target`, RGBA by rows that begin `stride` values apart. `progress` hears the finished
-    /// share and may stop the work.
-    pub(crate) fn render_into(
+    /// Renders some rows of a valid scene into `target`, RGBA by rows that begin `stride` values apart. `progress` hears the
+    /// finished share and may stop the work. Gives the time from the first launch on, unless kernels had to be built.
+    pub(crate) fn render_rows(
         &mut self,
         scene: &Scene,
+        rows: Range<u32>,
         target: &mut [f32],
         stride: usize,
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
-    ) -> Result<()> {
+    ) -> Result<Option<Duration>> {
+        let built = self.kernels.count();
         let job = self.job(scene, Output::Own)?;
-        let row = 4 * scene.image.width as usize;
-        let grain = job.work.grain.max(scene.image.width); // whole rows
+        let is_built = self.kernels.count() == built;
+        let width = scene.image.width as usize;
+        let [begin, end] = [rows.start, rows.end].map(|row| row as usize * width);
         let mut read = |output: &DeviceBuffer<Pixel>, compute: &Compute, band: Range<usize>| {
-            let first = band.start / scene.image.width as usize * stride;
-            match stride == row {
+            let first = (band.start - begin) / width * stride;
+            let target = &mut target[first..];
+            match stride == 4 * width {
                 true => output.read(
                     compute,
-                    bytemuck::cast_slice_mut(&mut target[4 * band.start..4 * band.end]),
+                    bytemuck::cast_slice_mut(&mut target[..4 * band.len()]),
                 ),
-                false => output.read_rows(compute, band.len(), row, &mut target[first..], stride),
+                false => output.read_rows(compute, band.len(), 4 * width, target, stride),
             }
         };
-        self.run(&job, scene.image.pixels(), grain, &mut read, progress)
+        let begun = Instant::now();
+        let grain = grain_rows(scene) * scene.image.width;
+        self.run(&job, begin..end, grain, &mut read, progress)?;
+        Ok(is_built.then(|| begun.elapsed()))
     }
 
     /// What the last frame cost.
@@ -138,7 +146,7 @@ impl OpenClRenderer {
             output.read(compute, &mut radiances[band])
         };
         let nothing = &mut |_: f32| ControlFlow::Continue(());
-        self.run(&job, rays.len(), 1, &mut read, nothing)?;
+        self.run(&job, 0..rays.len(), 1, &mut read, nothing)?;
         Ok(radiances)
     }
 
@@ -168,20 +176,21 @@ impl OpenClRenderer {
         Ok(job)
     }
 
-    /// Renders so many pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read.
+    /// Renders pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read.
     fn run(
         &mut self,
         job: &Job,
-        pixels: usize,
+        pixels: Range<usize>,
         grain: u32,
         read: &mut Read<'_>,
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
-        let band_len = self.band_len(pixels, grain)?;
-        self.begin(job, pixels)?;
-        for begin in (0..pixels).step_by(band_len) {
-            let band = begin..pixels.min(begin + band_len);
-            let mut report = |pixel: u32| progress(pixel as f32 / pixels as f32);
+        let band_len = self.band_len(pixels.len(), grain)?;
+        self.begin(job, pixels.len())?;
+        for begin in pixels.clone().step_by(band_len) {
+            let band = begin..pixels.end.min(begin + band_len);
+            let share = |pixel: u32| (pixel as usize - pixels.start) as f32 / pixels.len() as f32;
+            let mut report = |pixel: u32| progress(share(pixel));
             let last = self.launch_band(job, band.start as u32..band.end as u32, &mut report)?;
             read(self.output()?, &self.compute, band)?;
             self.settle(job, last)?;
