@@ -2,6 +2,7 @@
 
 use std::ops::{ControlFlow, Range};
 use std::sync::{OnceLock, mpsc};
+use std::thread;
 use std::time::Duration;
 
 use crate::device::{Backend, Device};
@@ -18,9 +19,6 @@ use crate::sharing::Sharing;
 pub(crate) struct SeveralRenderer {
     renderers: Vec<OpenClRenderer>,
     sharing: Sharing,
-    /// A thread for each device but one, which the caller's own waits for. They are kept: to begin them anew takes a
-    /// frame 50 us, to wake them 10.
-    threads: rayon::ThreadPool,
     rows: Vec<Range<u32>>,
     cost: FrameCost,
     image: Option<RadianceImage>,
@@ -46,21 +44,20 @@ impl SeveralRenderer {
     pub(crate) fn new(devices: &[Device], options: &BuildOptions) -> Result<Self> {
         let open = |device: &Device| {
             match &device.backend {
-            Backend::OpenCl(device) => OpenClRenderer::new(device, options),
+            Backend::OpenCl(device) => {
+                let mut renderer = OpenClRenderer::new(device, options)?;
+                renderer.writes_in_place = true;
+                Ok(renderer)
+            }
             Backend::Reference => Err(Error::Unsupported(
                 "the built-in reference shares no frame with other devices; choose it alone, or OpenCL devices only"
                     .to_owned(),
             )),
         }
         };
-        let threads = rayon::ThreadPoolBuilder::new()
-            .num_threads(devices.len() - 1)
-            .thread_name(|number| format!("device {}", number + 1))
-            .build();
         Ok(Self {
             renderers: devices.iter().map(open).collect::<Result<_>>()?,
             sharing: Sharing::new(devices.iter().map(|d| f64::from(d.compute_units.max(1)))),
-            threads: threads.map_err(|error| Error::OutOfMemory(error.to_string()))?,
             rows: Vec::new(),
             cost: FrameCost::default(),
             image: None,
@@ -100,7 +97,7 @@ impl SeveralRenderer {
             .zip(&rows)
             .map(share_out)
             .collect();
-        draw(&mut parts, &frame, &self.threads, progress);
+        draw(&mut parts, &frame, progress);
         if let Some(error) = frame.error.into_inner() {
             return Err(error);
         }
@@ -139,27 +136,31 @@ impl SeveralRenderer {
     }
 }
 
-/// Draws all parts that have rows: the first on this thread, which also tells `progress` of all.
+/// Draws all parts that have rows: the first on this thread, which also tells `progress` of all. Threads are begun anew
+/// for every frame: that takes 20 us, and kept ones (rayon's) woke so unevenly that frames of 1 ms took 1.2 times as long.
 fn draw(
     parts: &mut [Part<'_>],
     frame: &Frame<'_>,
-    threads: &rayon::ThreadPool,
     progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
 ) {
     let mut parts = parts.iter_mut().filter(|part| !part.rows.is_empty());
     let (sender, others) = mpsc::channel();
     let mut finished = Vec::new();
-    threads.in_place_scope(|scope| {
+    thread::scope(|scope| {
         let own = parts.next();
         for (number, part) in parts.enumerate() {
             let sender = sender.clone();
-            scope.spawn(move |_| {
-                let rows = part.rows.len() as f32;
+            let rows = part.rows.len() as f32;
+            let work = move || {
                 part.draw(frame, &mut |share| {
-                    // Somebody hears: this scope lasts longer than the thread.
+                    // Somebody hears: the channel lasts longer than the thread.
                     let _ = sender.send((number + 1, share * rows));
                 });
-            });
+            };
+            if let Err(error) = thread::Builder::new().spawn_scoped(scope, work) {
+                let message = format!("no thread for another device: {error}");
+                let _ = frame.error.set(Error::OutOfMemory(message));
+            }
         }
         drop(sender);
         let mut hear = |(number, rows): (usize, f32)| {

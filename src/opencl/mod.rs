@@ -13,6 +13,7 @@ mod failure;
 mod handle;
 mod host;
 mod host_image;
+mod in_place;
 mod job;
 mod kernels;
 mod key;

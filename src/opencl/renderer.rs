@@ -24,7 +24,7 @@ use crate::renderer::FrameCost;
 use crate::scene::Scene;
 
 /// A pixel of the output: linear RGBA.
-type Pixel = [f32; 4];
+pub(super) type Pixel = [f32; 4];
 
 /// A device with its kernels and buffers, which are kept from frame to frame.
 #[derive(Debug)]
@@ -43,6 +43,8 @@ pub struct OpenClRenderer {
     pub(super) unwatched: Vec<Launched>,
     /// The host's queue, if frames are enqueued for one.
     pub(super) host_queue: Option<Handle<CommandQueue>>,
+    /// Whether the device itself writes the caller's memory where it can; else what it wrote is copied there.
+    pub(crate) writes_in_place: bool,
     pub(super) compute: Compute,
 }
 
@@ -74,6 +76,7 @@ impl OpenClRenderer {
             cost: FrameCost::default(),
             unwatched: Vec::new(),
             host_queue: None,
+            writes_in_place: false,
             options: options.clone(),
             compute,
         }
@@ -99,6 +102,14 @@ impl OpenClRenderer {
         let is_built = self.kernels.count() == built;
         let width = scene.image.width as usize;
         let [begin, end] = [rows.start, rows.end].map(|row| row as usize * width);
+        let begun = Instant::now();
+        if stride == 4 * width {
+            let target: &mut [Pixel] = bytemuck::cast_slice_mut(&mut target[..4 * (end - begin)]);
+            if self.reaches(target) {
+                self.run_in_place(&job, begin..end, target, progress)?;
+                return Ok(is_built.then(|| begun.elapsed()));
+            }
+        }
         let mut read = |output: &DeviceBuffer<Pixel>, compute: &Compute, band: Range<usize>| {
             let first = (band.start - begin) / width * stride;
             let target = &mut target[first..];
@@ -110,7 +121,6 @@ impl OpenClRenderer {
                 false => output.read_rows(compute, band.len(), 4 * width, target, stride),
             }
         };
-        let begun = Instant::now();
         let grain = grain_rows(scene) * scene.image.width;
         self.run(&job, begin..end, grain, &mut read, progress)?;
         Ok(is_built.then(|| begun.elapsed()))
@@ -177,7 +187,7 @@ impl OpenClRenderer {
     }
 
     /// Renders pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read.
-    fn run(
+    pub(super) fn run(
         &mut self,
         job: &Job,
         pixels: Range<usize>,
@@ -239,17 +249,19 @@ impl OpenClRenderer {
     /// Makes sure of an output buffer for `pixels` pixels, or for as many as the device's limits allow, a multiple of
     /// `grain`.
     fn band_len(&mut self, pixels: usize, grain: u32) -> Result<usize> {
-        let device = &self.compute.device;
-        // A quarter of the memory leaves room for the sources and for everyone else.
-        let bytes = device
-            .max_allocation_bytes
-            .min(device.memory_bytes / 4)
-            .min(MOST_BAND_BYTES);
         let grain = grain as usize;
-        let grains = (bytes as usize / size_of::<Pixel>() / grain).max(1);
+        let grains = (self.most_output_bytes() as usize / size_of::<Pixel>() / grain).max(1);
         let wanted = pixels.min(grains * grain);
         self.reserve_output(wanted)?;
         Ok(wanted.max(1))
+    }
+
+    /// Of an output buffer.
+    pub(super) fn most_output_bytes(&self) -> u64 {
+        let device = &self.compute.device;
+        // A quarter of the memory leaves room for the sources and for everyone else.
+        let bytes = device.max_allocation_bytes.min(device.memory_bytes / 4);
+        bytes.min(MOST_BAND_BYTES)
     }
 
     /// Makes sure of an output buffer for so many pixels.
