@@ -41,6 +41,19 @@ pub enum Error {
         log: String,
     },
 
+    /// Kernels gave a wrong answer where the right one is known: the driver compiled them wrongly, or the device is broken.
+    #[error(
+        "{device} computes wrong (driver {driver}): {reason}; update the driver, choose another device with --device, or insist on this one with --no-self-test (BuildOptions::skips_self_test)"
+    )]
+    SelfTest {
+        /// Name of the device.
+        device: String,
+        /// Platform and version of the driver.
+        driver: String,
+        /// What was found and what was expected.
+        reason: String,
+    },
+
     /// A call to OpenCL failed.
     #[error("{device}: {call} failed ({code}); {advice}")]
     Device {

@@ -54,7 +54,7 @@ pub mod reference;
 mod renderer;
 pub mod scene;
 mod several;
-mod sharing;
+mod shares;
 pub mod verify;
 
 pub use device::{Device, DeviceType, Devices};

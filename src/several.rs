@@ -12,13 +12,13 @@ use crate::opencl::{BuildOptions, OpenClRenderer, grain_rows};
 use crate::ray::Ray;
 use crate::renderer::{FrameCost, kept_image};
 use crate::scene::Scene;
-use crate::sharing::Sharing;
+use crate::shares::Shares;
 
 /// Devices that share the rows of each frame out among them.
 #[derive(Debug)]
 pub(crate) struct SeveralRenderer {
     renderers: Vec<OpenClRenderer>,
-    sharing: Sharing,
+    shares: Shares,
     rows: Vec<Range<u32>>,
     cost: FrameCost,
     image: Option<RadianceImage>,
@@ -57,7 +57,7 @@ impl SeveralRenderer {
         };
         Ok(Self {
             renderers: devices.iter().map(open).collect::<Result<_>>()?,
-            sharing: Sharing::new(devices.iter().map(|d| f64::from(d.compute_units.max(1)))),
+            shares: Shares::new(devices.iter().map(|d| f64::from(d.compute_units.max(1)))),
             rows: Vec::new(),
             cost: FrameCost::default(),
             image: None,
@@ -73,7 +73,7 @@ impl SeveralRenderer {
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
         let height = scene.image.height;
-        let rows = self.sharing.split(height, grain_rows(scene));
+        let rows = self.shares.split(height, grain_rows(scene));
         let frame = Frame {
             scene,
             stride,
@@ -103,7 +103,7 @@ impl SeveralRenderer {
         }
         self.cost = cost(&parts);
         let times: Vec<Option<Duration>> = parts.iter().map(|part| part.time).collect();
-        self.sharing.learn(&rows, &times);
+        self.shares.learn(&rows, &times);
         self.rows = rows;
         Ok(())
     }

@@ -82,3 +82,21 @@ fn hidden_surfaces_draws_tetrahedra_and_their_depths() {
         at(20, 200)
     );
 }
+
+#[test]
+fn host_opencl_draws_into_its_own_image() {
+    let (names, folder) = drawn("host_opencl");
+    assert_eq!(names, ["host.png"]);
+    let picture = image::open(folder.path().join("host.png"))
+        .unwrap()
+        .into_rgb8();
+    assert_eq!(picture.dimensions(), (320, 240));
+    // The last ring: orange, and darker in its middle than on it.
+    let [red, _, blue] = picture.get_pixel(160, 155).0;
+    let [middle, ..] = picture.get_pixel(160, 120).0;
+    assert!(
+        red > 150 && u32::from(red) * 2 > u32::from(blue) * 3,
+        "{red} {blue}"
+    );
+    assert!(middle < red / 2, "{middle} {red}");
+}

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use energywave::Error;
 use energywave::image::{DepthAlong, DepthImage};
 use energywave::scene::{ImageSize, Method, Sampling, Scene};
+use energywave::{BuildOptions, Error};
 
 /// Volumetric energy effects, integrated along every view ray on any OpenCL device.
 #[derive(Debug, Parser)]
@@ -118,6 +118,19 @@ pub struct DeviceArgument {
     /// device [env: ENERGYWAVE_DEVICE] [default: best GPU, else CPU, else reference]
     #[arg(long)]
     pub device: Option<String>,
+    /// Draw also on a device that computes wrong
+    #[arg(long)]
+    pub no_self_test: bool,
+}
+
+impl DeviceArgument {
+    /// How the kernels are built.
+    pub fn options(&self) -> BuildOptions {
+        BuildOptions {
+            skips_self_test: self.no_self_test,
+            ..BuildOptions::default()
+        }
+    }
 }
 
 /// Options that replace values of the scene file.

@@ -13,7 +13,7 @@ use energywave::{Device, DeviceType, Error, Renderer, Scene};
 use serde::Serialize;
 
 use super::args::{BenchArguments, TableName};
-use super::{Outcome, choose_devices, note, open, print, print_json};
+use super::{Outcome, choose_devices, note, print, print_json};
 
 /// A cell of a table.
 #[derive(Serialize)]
@@ -259,7 +259,7 @@ fn prepare(arguments: &BenchArguments) -> Result<(Vec<Device>, Renderer), super:
         })?;
     }
     let devices = choose_devices(arguments.device.device.as_deref())?;
-    let renderer = open(&devices)?;
+    let renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     note(&format!("a cell takes {} s", arguments.seconds));
     Ok((devices, renderer))
 }

@@ -12,7 +12,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
-use energywave::{BuildOptions, Device, Devices, Error, Renderer};
+use energywave::{Device, Devices, Error};
 
 use args::{Arguments, Command};
 
@@ -89,11 +89,6 @@ fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
         }
     }
     Ok(chosen)
-}
-
-/// A renderer on all of these devices.
-fn open(devices: &[Device]) -> Result<Renderer, Failure> {
-    Ok(Renderer::on_devices(devices, &BuildOptions::default())?)
 }
 
 /// One line on standard error.

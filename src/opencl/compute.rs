@@ -1,7 +1,8 @@
 //! A device with its context and its queue.
 
 use opencl3::command_queue::{CL_QUEUE_PROFILING_ENABLE, CommandQueue};
-use opencl3::context::Context;
+use opencl3::context::{Context, context::retain_context};
+use opencl3::error_codes::ClError;
 
 use super::OpenClDevice;
 use super::failure::failed;
@@ -43,6 +44,19 @@ impl Compute {
             context,
             device: device.clone(),
         })
+    }
+
+    /// Another queue on the same device in the same context.
+    pub(super) fn sibling(&self) -> Result<Self> {
+        let context = self.context.get();
+        // SAFETY: the context is alive, and the reference taken is given back by the handle.
+        let context = unsafe {
+            retain_context(context)
+                .map_err(ClError)
+                .map_err(failed(&self.device.name, "clRetainContext"))?;
+            Handle::new(Context::new(context, &[]))
+        };
+        Self::in_context(context, &self.device)
     }
 
     /// The device's properties.

@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use opencl3::kernel::Kernel;
 
-use super::Compute;
 use super::handle::Handle;
 use super::program::{BuildOptions, Program};
 use super::tiles;
+use super::{Compute, ProgramKey};
 use crate::error::{Error, Result};
 use crate::pack::Rule;
 use crate::scene::Method;
@@ -75,7 +75,8 @@ impl Variant {
 pub(super) struct Kernels(HashMap<Task, Handle<Kernel>>);
 
 impl Kernels {
-    /// Makes sure of a kernel. `rule` is what the method `exact` integrates with.
+    /// Makes sure of a kernel; the key of its program if it was built now. `rule` is what the method `exact` integrates
+    /// with.
     ///
     /// # Errors
     /// As [`Program::build`].
@@ -85,9 +86,9 @@ impl Kernels {
         options: &BuildOptions,
         task: Task,
         rule: &Rule,
-    ) -> Result<()> {
+    ) -> Result<Option<ProgramKey>> {
         if self.0.contains_key(&task) {
-            return Ok(());
+            return Ok(None);
         }
         let mut definitions = match task.method {
             Variant::Simpson => String::new(),
@@ -116,7 +117,12 @@ impl Kernels {
         };
         let program = Program::build(compute, &[file], &options)?;
         self.0.insert(task, program.kernel(name)?);
-        Ok(())
+        Ok(Some(program.key()))
+    }
+
+    /// Lets a kernel go.
+    pub(super) fn forget(&mut self, task: Task) {
+        self.0.remove(&task);
     }
 
     /// How many were built.

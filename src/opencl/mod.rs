@@ -17,12 +17,14 @@ mod in_place;
 mod job;
 mod kernels;
 mod key;
+mod known_scene;
 mod launch;
 mod lists;
 mod mapped;
 mod pace;
 mod program;
 mod renderer;
+mod self_test;
 mod source;
 mod tiles;
 

@@ -39,6 +39,8 @@ pub struct BuildOptions {
     pub counts_nodes: bool,
     /// Further options for the OpenCL compiler.
     pub extra: String,
+    /// Whether kernels draw without having shown, at their first use on a device, that they compute right.
+    pub skips_self_test: bool,
     /// Whether what was built is kept on disk for the next start.
     pub cache: KernelCache,
 }

@@ -171,8 +171,10 @@ impl OpenClRenderer {
         let rule = self.options.rule.unwrap_or(fitting);
         let units = self.device().compute_units;
         let job = Job::new(scene, rule, view, sources, &wanted, units);
-        self.kernels
-            .prepare(&self.compute, &self.options, job.task, &rule)?;
+        let (compute, options) = (&self.compute, &self.options);
+        if let Some(built) = self.kernels.prepare(compute, options, job.task, &rule)? {
+            self.self_test(job.task, built, &scene.integration)?;
+        }
         let nodes = match job.task.method {
             Variant::Simpson => {
                 // Of a ray that ends early, only the kernel knows where its nodes are.

@@ -175,7 +175,6 @@ pub(crate) fn render_into(
     target: &mut [f32],
     progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
 ) -> Result<()> {
-    let width = scene.image.width as usize;
     let plane = ViewPlane::new(&scene.camera, scene.image);
     let tracer = Tracer::new(scene, method, plane.ray_length);
     let band_len = tracer.band_len();
@@ -186,12 +185,7 @@ pub(crate) fn render_into(
             .enumerate()
             .for_each(|(i, pixel)| {
                 let index = band * band_len + i;
-                let (row, column) = (index / width, index % width);
-                let ray = plane.ray(column as u32, row as u32);
-                let end = scene.depth.as_ref().map_or(1.0, |depth| {
-                    plane.end(&ray, depth.as_slice()[index], depth.along())
-                });
-                let light = tracer.radiance(&ray, end).as_vec3();
+                let light = tracer.pixel(scene, &plane, index).as_vec3();
                 pixel.copy_from_slice(&[light.x, light.y, light.z, 1.0]);
             });
         if progress((band + 1) as f32 / band_count as f32).is_break() {
@@ -226,6 +220,16 @@ impl Tracer {
                 Measure::Length => ray_length,
             },
         }
+    }
+
+    /// Linear RGB of a pixel, counted by rows from the top left.
+    pub(crate) fn pixel(&self, scene: &Scene, plane: &ViewPlane, index: usize) -> DVec3 {
+        let width = scene.image.width as usize;
+        let ray = plane.ray((index % width) as u32, (index / width) as u32);
+        let end = scene.depth.as_ref().map_or(1.0, |depth| {
+            plane.end(&ray, depth.as_slice()[index], depth.along())
+        });
+        self.radiance(&ray, end)
     }
 
     /// Linear RGB along a ray, over s in `[0,end]`.

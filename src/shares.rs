@@ -8,7 +8,7 @@ const PATIENCE: u32 = 50;
 
 /// The speeds of devices, learnt from frame to frame.
 #[derive(Debug)]
-pub(crate) struct Sharing(Vec<Pace>);
+pub(crate) struct Shares(Vec<Pace>);
 
 #[derive(Debug)]
 struct Pace {
@@ -20,7 +20,7 @@ struct Pace {
     idle: Duration,
 }
 
-impl Sharing {
+impl Shares {
     /// Begins with a guess at the devices' speeds beside each other, above 0.
     pub(crate) fn new(guess: impl IntoIterator<Item = f64>) -> Self {
         let paces = guess.into_iter().map(|speed| Pace {
@@ -83,7 +83,7 @@ mod tests {
 
     /// Frames on devices of these speeds; `cost` is what a row costs.
     fn frames(
-        sharing: &mut Sharing,
+        shares: &mut Shares,
         speeds: &[f64],
         rows: u32,
         grain: u32,
@@ -92,7 +92,7 @@ mod tests {
     ) -> Vec<Vec<f64>> {
         let mut frames = Vec::new();
         for _ in 0..count {
-            let ranges = sharing.split(rows, grain);
+            let ranges = shares.split(rows, grain);
             assert_eq!((ranges[0].start, ranges[ranges.len() - 1].end), (0, rows));
             assert!(ranges.windows(2).all(|pair| pair[0].end == pair[1].start));
             assert!(
@@ -106,7 +106,7 @@ mod tests {
             let took = times.iter().zip(&ranges).map(|(time, range)| {
                 (!range.is_empty()).then(|| Duration::from_secs_f64(1e-3 * time))
             });
-            sharing.learn(&ranges, &took.collect::<Vec<_>>());
+            shares.learn(&ranges, &took.collect::<Vec<_>>());
             frames.push(times);
         }
         frames
@@ -124,8 +124,8 @@ mod tests {
     #[test]
     fn devices_of_any_speed_are_soon_done_together() {
         for speeds in [&[1.0, 1.0][..], &[1.0, 3.0], &[20.0, 1.0], &[1.0, 7.0, 2.0]] {
-            let mut sharing = Sharing::new(speeds.iter().map(|_| 1.0));
-            let found = frames(&mut sharing, speeds, 1024, 1, |_| 1.0, 12);
+            let mut shares = Shares::new(speeds.iter().map(|_| 1.0));
+            let found = frames(&mut shares, speeds, 1024, 1, |_| 1.0, 12);
             let best = ideal(speeds, 1024, |_| 1.0);
             assert!(longest(&found[11]) < 1.05 * best, "{speeds:?}: {found:?}");
         }
@@ -138,8 +138,8 @@ mod tests {
         let costs: [&dyn Fn(u32) -> f64; 2] = [&bottom, &middle];
         for cost in costs {
             for speeds in [&[1.0, 1.0][..], &[1.0, 3.0], &[20.0, 1.0], &[1.0, 1.0, 1.0]] {
-                let mut sharing = Sharing::new(speeds.iter().map(|_| 1.0));
-                let found = frames(&mut sharing, speeds, 1024, 1, cost, 40);
+                let mut shares = Shares::new(speeds.iter().map(|_| 1.0));
+                let found = frames(&mut shares, speeds, 1024, 1, cost, 40);
                 let best = ideal(speeds, 1024, cost);
                 let late = found[20..].iter().map(|times| longest(times) / best);
                 let mean = late.sum::<f64>() / 20.0;
@@ -150,9 +150,9 @@ mod tests {
 
     #[test]
     fn a_device_too_slow_for_a_grain_gets_one_now_and_then_and_costs_little() {
-        let mut sharing = Sharing::new([1.0, 1.0]);
+        let mut shares = Shares::new([1.0, 1.0]);
         let speeds = [1.0, 0.01];
-        let found = frames(&mut sharing, &speeds, 512, 64, |_| 1.0, 4000);
+        let found = frames(&mut shares, &speeds, 512, 64, |_| 1.0, 4000);
         let turns = found[10..].iter().filter(|times| times[1] > 0.0).count();
         assert!((2..20).contains(&turns), "{turns}");
         let mean = found[10..].iter().map(|times| longest(times)).sum::<f64>() / 3990.0;
@@ -161,18 +161,18 @@ mod tests {
 
     #[test]
     fn a_device_that_was_busy_comes_back() {
-        let mut sharing = Sharing::new([1.0, 1.0]);
-        frames(&mut sharing, &[1.0, 0.01], 512, 64, |_| 1.0, 30);
-        assert_eq!(sharing.split(512, 64)[1].len(), 0);
-        let found = frames(&mut sharing, &[1.0, 1.0], 512, 64, |_| 1.0, 2000);
+        let mut shares = Shares::new([1.0, 1.0]);
+        frames(&mut shares, &[1.0, 0.01], 512, 64, |_| 1.0, 30);
+        assert_eq!(shares.split(512, 64)[1].len(), 0);
+        let found = frames(&mut shares, &[1.0, 1.0], 512, 64, |_| 1.0, 2000);
         assert!(longest(&found[1999]) < 260.0, "{:?}", found[1999]);
     }
 
     #[test]
     fn an_image_of_one_grain_goes_to_the_fastest_and_unknown_times_teach_nothing() {
-        let mut sharing = Sharing::new([1.0, 4.0, 2.0]);
-        assert_eq!(sharing.split(5, 64), [0..0, 0..5, 5..5]);
-        sharing.learn(&[0..1, 1..2, 2..3], &[None; 3]);
-        assert_eq!(sharing.split(7, 1), [0..1, 1..5, 5..7]);
+        let mut shares = Shares::new([1.0, 4.0, 2.0]);
+        assert_eq!(shares.split(5, 64), [0..0, 0..5, 5..5]);
+        shares.learn(&[0..1, 1..2, 2..3], &[None; 3]);
+        assert_eq!(shares.split(7, 1), [0..1, 1..5, 5..7]);
     }
 }
