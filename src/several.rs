@@ -214,3 +214,35 @@ fn cost(parts: &[Part<'_>]) -> FrameCost {
         }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::Table;
+    use crate::image::{DepthAlong, DepthImage};
+    use crate::opencl::discover;
+    use crate::renderer::{Renderer, RendererBackend};
+
+    #[test]
+    fn the_error_of_one_device_is_the_frames_and_the_next_frame_is_drawn() {
+        let device = Device::select("0").unwrap();
+        let mut scene = Table::Torus.scene(128, 64);
+        let image = Renderer::new(&device).unwrap().render(&scene).unwrap();
+        let mut opencl = discover().devices.swap_remove(0);
+        opencl.max_allocation_bytes = 40_000; // no depth for every pixel
+        let mut small = device.clone();
+        small.backend = Backend::OpenCl(opencl);
+        let devices = [device, small];
+        let mut renderer = Renderer::on_devices(&devices, &BuildOptions::default()).unwrap();
+        assert!(matches!(renderer.backend, RendererBackend::Several(_)));
+        let depths = vec![f32::INFINITY; scene.image.pixels()];
+        for _ in 0..2 {
+            scene.depth =
+                Some(DepthImage::new(scene.image, DepthAlong::Ray, depths.clone()).unwrap());
+            let error = renderer.render(&scene).unwrap_err();
+            assert!(matches!(error, Error::OutOfMemory(_)), "{error}");
+            scene.depth = None;
+            assert!(renderer.render(&scene).unwrap() == image);
+        }
+    }
+}

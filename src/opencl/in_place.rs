@@ -18,7 +18,8 @@ impl OpenClRenderer {
     /// Whether the device is to write there, and can: its memory is the host's, and pixels begin as kernels want them.
     pub(super) fn reaches(&self, target: &[Pixel]) -> bool {
         let device = self.device();
-        self.writes_in_place
+        !target.is_empty()
+            && self.writes_in_place
             && device.device_type == DeviceType::Cpu
             && device.shares_host_memory
             && target.as_ptr().addr().is_multiple_of(size_of::<Pixel>())
