@@ -155,22 +155,54 @@ impl Devices {
         };
         match fitting.as_slice() {
             [device] => Ok((*device).clone()),
-            [] => {
-                let problem = match &self.problem {
-                    Some(problem) => format!(" ({problem})"),
-                    None => String::new(),
-                };
-                Err(Error::NoSuchDevice(format!(
-                    "no device \"{choice}\"{problem}; there are:{}",
-                    listed(self.list.iter())
-                )))
-            }
+            [] => Err(self.none(choice)),
             several => Err(Error::NoSuchDevice(format!(
                 "\"{choice}\" fits {} devices, choose one by its index or a longer part of its name:{}",
                 several.len(),
                 listed(several.iter().copied())
             ))),
         }
+    }
+
+    /// The devices that `choice` names: `all`, every OpenCL device but simulators; or a list of what [`Device::select`]
+    /// takes, with commas between, such as `0,1` or `gpu,cpu`.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchDevice`] if there is none for a part of the choice, several, or one that is there already.
+    pub fn select_all(&self, choice: &str) -> Result<Vec<Device>> {
+        if choice.trim().eq_ignore_ascii_case("all") {
+            let is_real = |device: &&Device| {
+                device.device_type != DeviceType::Reference && !device.is_simulator()
+            };
+            let all: Vec<Device> = self.list.iter().filter(is_real).cloned().collect();
+            return match all.is_empty() {
+                true => Err(self.none("all")),
+                false => Ok(all),
+            };
+        }
+        let mut devices: Vec<Device> = Vec::new();
+        for word in choice.split(',') {
+            let device = self.select(word)?;
+            if devices.iter().any(|there| there.index == device.index) {
+                return Err(Error::NoSuchDevice(format!(
+                    "\"{choice}\" names a device twice: {device}"
+                )));
+            }
+            devices.push(device);
+        }
+        Ok(devices)
+    }
+
+    /// Nothing answers to the choice.
+    fn none(&self, choice: &str) -> Error {
+        let problem = match &self.problem {
+            Some(problem) => format!(" ({problem})"),
+            None => String::new(),
+        };
+        Error::NoSuchDevice(format!(
+            "no device \"{choice}\"{problem}; there are:{}",
+            listed(self.list.iter())
+        ))
     }
 
     /// Devices of a type, the best first; a simulator only where there is no real one.

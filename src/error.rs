@@ -26,7 +26,7 @@ pub enum Error {
     #[error("{0}")]
     Unsupported(String),
 
-    /// No device, or not exactly one, answers to the choice.
+    /// No device answers to the choice, or more than one where one is meant.
     #[error("{0}")]
     NoSuchDevice(String),
 

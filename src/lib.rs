@@ -53,6 +53,8 @@ pub mod ray;
 pub mod reference;
 mod renderer;
 pub mod scene;
+mod several;
+mod shares;
 pub mod verify;
 
 pub use device::{Device, DeviceType, Devices};

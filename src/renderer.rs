@@ -1,6 +1,6 @@
 //! The renderer: one front for the OpenCL devices and the built-in reference.
 
-use std::ops::{ControlFlow, Deref};
+use std::ops::{ControlFlow, Deref, Range};
 use std::time::{Duration, Instant};
 
 use crate::device::{Backend, Device};
@@ -10,11 +10,12 @@ use crate::opencl::{BuildOptions, Mapped, OpenClRenderer};
 use crate::ray::Ray;
 use crate::reference::{self, Tracer};
 use crate::scene::{ImageSize, Method, Scene};
+use crate::several::SeveralRenderer;
 
 /// What a frame cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FrameCost {
-    /// Time that the device worked on kernels.
+    /// Time that the device worked on kernels; of several devices, the longest.
     pub kernel: Duration,
     /// Integrals: pairs of a ray and a source.
     pub evaluations: u64,
@@ -31,7 +32,7 @@ pub struct MappedImage<'a>(MappedBackend<'a>);
 #[derive(Debug)]
 enum MappedBackend<'a> {
     OpenCl(Mapped<'a>),
-    Reference(&'a [f32]),
+    Host(&'a [f32]),
 }
 
 impl Deref for MappedImage<'_> {
@@ -40,12 +41,12 @@ impl Deref for MappedImage<'_> {
     fn deref(&self) -> &[f32] {
         match &self.0 {
             MappedBackend::OpenCl(mapped) => mapped,
-            MappedBackend::Reference(values) => values,
+            MappedBackend::Host(values) => values,
         }
     }
 }
 
-/// Renders scenes on one device. Kernels and buffers are kept: frames after the first allocate nothing on the device and
+/// Renders scenes on a device, or on several at once. Kernels and buffers are kept: frames after the first allocate nothing on the device and
 /// upload only what changed.
 #[derive(Debug)]
 pub struct Renderer {
@@ -55,6 +56,7 @@ pub struct Renderer {
 #[derive(Debug)]
 pub(crate) enum RendererBackend {
     OpenCl(Box<OpenClRenderer>),
+    Several(Box<SeveralRenderer>),
     Reference {
         image: Option<RadianceImage>,
         cost: FrameCost,
@@ -85,6 +87,38 @@ impl Renderer {
             },
         };
         Ok(Self { backend })
+    }
+
+    /// Draws every frame on all these devices at once, each a range of its rows: in the first frame as many as it has
+    /// compute units beside the others, then by the time that it took in the last ones, so that all are done together.
+    /// A device too slow for a row gets one again now and then.
+    ///
+    /// Devices of one kind draw the image that one of them draws, bit for bit; others differ within the tolerance. Single
+    /// rays ([`Renderer::trace`]) go to the first. One device is as by [`Renderer::with_options`].
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] if there is no device, or the built-in reference is among several; [`Error::Device`].
+    pub fn on_devices(devices: &[Device], options: &BuildOptions) -> Result<Self> {
+        match devices {
+            [] => Err(Error::Unsupported(
+                "a renderer needs a device; the list has none".to_owned(),
+            )),
+            [device] => Self::with_options(device, options),
+            several => {
+                let renderer = SeveralRenderer::new(several, options)?;
+                let backend = RendererBackend::Several(Box::new(renderer));
+                Ok(Self { backend })
+            }
+        }
+    }
+
+    /// The rows of the last frame that each device drew, in the order of [`Renderer::on_devices`]; none before the first
+    /// frame, or on one device.
+    pub fn shares(&self) -> &[Range<u32>] {
+        match &self.backend {
+            RendererBackend::Several(renderer) => renderer.rows(),
+            RendererBackend::OpenCl(_) | RendererBackend::Reference { .. } => &[],
+        }
     }
 
     /// The scene's linear radiance, RGBA.
@@ -160,7 +194,7 @@ impl Renderer {
         self.draw(scene, target, stride, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// Renders into the renderer's own memory. On a CPU device the image is where the kernels wrote it: nothing is copied.
+    /// Renders into the renderer's own memory. On one CPU device the image is where the kernels wrote it: nothing is copied.
     ///
     /// # Errors
     /// As [`Renderer::render`], and [`Error::OutOfMemory`] if the image is larger than one buffer of the device.
@@ -171,6 +205,10 @@ impl Renderer {
                 let mapped = renderer.render_mapped(scene)?;
                 Ok(MappedImage(MappedBackend::OpenCl(mapped)))
             }
+            RendererBackend::Several(renderer) => {
+                let values = renderer.render_kept(scene)?;
+                Ok(MappedImage(MappedBackend::Host(values)))
+            }
             RendererBackend::Reference { image, cost } => {
                 let begun = Instant::now();
                 let image = kept_image(image, scene.image)?;
@@ -178,7 +216,7 @@ impl Renderer {
                 let method = scene.integration.method;
                 reference::render_into(scene, method, image.as_mut_slice(), nothing)?;
                 *cost = reference_cost(scene, begun.elapsed());
-                Ok(MappedImage(MappedBackend::Reference(image.as_slice())))
+                Ok(MappedImage(MappedBackend::Host(image.as_slice())))
             }
         }
     }
@@ -187,6 +225,7 @@ impl Renderer {
     pub fn last_cost(&self) -> FrameCost {
         match &self.backend {
             RendererBackend::OpenCl(renderer) => renderer.cost(),
+            RendererBackend::Several(renderer) => renderer.cost(),
             RendererBackend::Reference { cost, .. } => *cost,
         }
     }
@@ -200,6 +239,11 @@ impl Renderer {
     ) -> Result<()> {
         match &mut self.backend {
             RendererBackend::OpenCl(renderer) => {
+                let rows = 0..scene.image.height;
+                renderer.render_rows(scene, rows, target, stride, progress)?;
+                Ok(())
+            }
+            RendererBackend::Several(renderer) => {
                 renderer.render_into(scene, target, stride, progress)
             }
             RendererBackend::Reference { image, cost } => {
@@ -234,27 +278,25 @@ impl Renderer {
                 return Err(SceneError::value(format!("ray {index}"), fault).into());
             }
         }
-        match &mut self.backend {
-            RendererBackend::OpenCl(renderer) => {
-                let pixels = renderer.trace(scene, rays)?;
-                Ok(pixels
-                    .iter()
-                    .map(|p| [p[0], p[1], p[2]].map(f64::from))
-                    .collect())
-            }
+        let pixels = match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.trace(scene, rays)?,
+            RendererBackend::Several(renderer) => renderer.trace(scene, rays)?,
             RendererBackend::Reference { .. } => {
                 let tracer = Tracer::new(scene, scene.integration.method, 1.0);
-                Ok(rays
-                    .iter()
-                    .map(|ray| tracer.radiance(ray, 1.0).to_array())
-                    .collect())
+                let radiances = rays.iter().map(|ray| tracer.radiance(ray, 1.0).to_array());
+                return Ok(radiances.collect());
             }
-        }
+        };
+        let colors = pixels.iter().map(|p| [p[0], p[1], p[2]].map(f64::from));
+        Ok(colors.collect())
     }
 }
 
 /// The renderer's own image, made anew if it has another size.
-fn kept_image(image: &mut Option<RadianceImage>, size: ImageSize) -> Result<&mut RadianceImage> {
+pub(crate) fn kept_image(
+    image: &mut Option<RadianceImage>,
+    size: ImageSize,
+) -> Result<&mut RadianceImage> {
     let kept = image.take().filter(|image| image.size() == size);
     Ok(image.insert(match kept {
         Some(image) => image,

@@ -13,9 +13,16 @@ fn program(name: &str) -> PathBuf {
 
 /// The names of what an example leaves in a folder, in order.
 fn drawn(name: &str) -> (Vec<String>, tempfile::TempDir) {
+    let (names, folder, _) = drawn_and_said(name);
+    (names, folder)
+}
+
+/// The same, and what it says.
+fn drawn_and_said(name: &str) -> (Vec<String>, tempfile::TempDir, String) {
     let folder = tempfile::tempdir().unwrap();
     let output = Command::new(program(name))
         .arg(folder.path())
+        .env("POCL_DEVICES", "pthread pthread") // one CPU as two devices; other drivers do not read it
         .output()
         .unwrap();
     let message = String::from_utf8_lossy(&output.stderr);
@@ -25,7 +32,7 @@ fn drawn(name: &str) -> (Vec<String>, tempfile::TempDir) {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     names.sort();
-    (names, folder)
+    (names, folder, String::from_utf8(output.stdout).unwrap())
 }
 
 /// Mean of a picture's bytes, 0 to 255.
@@ -99,4 +106,19 @@ fn host_opencl_draws_into_its_own_image() {
         "{red} {blue}"
     );
     assert!(middle < red / 2, "{middle} {red}");
+}
+
+#[test]
+fn several_devices_share_a_picture() {
+    let (names, folder, said) = drawn_and_said("several_devices");
+    assert_eq!(names, ["curve.png"]);
+    let mean = brightness(&folder.path().join("curve.png"));
+    assert!((10.0..120.0).contains(&mean), "{mean}");
+    if said.contains("pthread") {
+        assert!(
+            said.starts_with("frame 0: rows 0..192 by 0: pthread"),
+            "{said}"
+        );
+        assert_eq!(said.lines().count(), 16, "{said}");
+    }
 }

@@ -114,7 +114,8 @@ pub struct CompareArguments {
 
 #[derive(Debug, Args)]
 pub struct DeviceArgument {
-    /// Index, part of a name, gpu, cpu or reference [env: ENERGYWAVE_DEVICE] [default: best GPU, else CPU, else reference]
+    /// Index, part of a name, gpu, cpu or reference; several, such as 0,1 or gpu,cpu, share each frame; all: every OpenCL
+    /// device [env: ENERGYWAVE_DEVICE] [default: best GPU, else CPU, else reference]
     #[arg(long)]
     pub device: Option<String>,
     /// Draw also on a device that computes wrong

@@ -13,7 +13,7 @@ use energywave::{Device, DeviceType, Error, Renderer, Scene};
 use serde::Serialize;
 
 use super::args::{BenchArguments, TableName};
-use super::{Outcome, choose_device, note, print, print_json};
+use super::{Outcome, choose_devices, note, print, print_json};
 
 /// A cell of a table.
 #[derive(Serialize)]
@@ -86,7 +86,7 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
 }
 
 fn bench_tables(arguments: &BenchArguments, tables: &[Table]) -> Outcome {
-    let (device, mut renderer) = prepare(arguments)?;
+    let (devices, mut renderer) = prepare(arguments)?;
     let mut cells = Vec::new();
     for &table in tables {
         for (row, resolution) in RESOLUTIONS.into_iter().enumerate() {
@@ -106,7 +106,7 @@ fn bench_tables(arguments: &BenchArguments, tables: &[Table]) -> Outcome {
                     ratio: speed.fps / paper_fps,
                     kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
                     frame: speed.frame,
-                    device: device.name.clone(),
+                    device: names(&devices),
                 };
                 if !arguments.json {
                     print_cell(&cell, cells.is_empty())?;
@@ -122,7 +122,7 @@ fn bench_tables(arguments: &BenchArguments, tables: &[Table]) -> Outcome {
 }
 
 fn bench_table_2010(arguments: &BenchArguments) -> Outcome {
-    let (device, mut renderer) = prepare(arguments)?;
+    let (devices, mut renderer) = prepare(arguments)?;
     let mut cells: Vec<BeamCell> = Vec::new();
     for (number, known) in TABLE_2010.into_iter().enumerate() {
         let mut scene = known.scene()?;
@@ -146,7 +146,7 @@ fn bench_table_2010(arguments: &BenchArguments) -> Outcome {
             kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
             frame: speed.frame,
             tiles_fps: by_tiles.fps,
-            device: device.name.clone(),
+            device: names(&devices),
             single_threaded_fps,
             paper_single_threaded_fps: single_threaded_fps.map(|_| PAPER_CPU_FPS),
         };
@@ -213,13 +213,15 @@ fn print_cell(cell: &Cell, is_first: bool) -> Outcome {
 
 fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     let scene = Scene::from_file_with(path, |scene| arguments.overrides.apply(scene))?;
-    let (device, mut renderer) = prepare(arguments)?;
+    let (devices, mut renderer) = prepare(arguments)?;
     let speed = measure(&mut renderer, &scene, time(arguments))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     save(arguments, &format!("{stem}.exr"), &speed, &scene)?;
-    let cost = match (scene.integration.method, device.device_type) {
-        (Method::Simpson, _) | (_, DeviceType::Reference) => speed.cost,
-        (Method::Exact, _) => exact_cost(&device, &scene)?,
+    let cost = match (scene.integration.method, &devices[0]) {
+        (Method::Exact, device) if device.device_type != DeviceType::Reference => {
+            exact_cost(device, &scene)?
+        }
+        _ => speed.cost,
     };
     let record = SceneSpeed {
         scene: path.display().to_string(),
@@ -232,7 +234,7 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
         evaluations: cost.evaluations,
         field_evaluations: cost.field_evaluations,
         frame: speed.frame,
-        device: device.name,
+        device: names(&devices),
     };
     if arguments.json {
         return print_json(&record);
@@ -249,17 +251,23 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     ))
 }
 
-fn prepare(arguments: &BenchArguments) -> Result<(Device, Renderer), super::Failure> {
+fn prepare(arguments: &BenchArguments) -> Result<(Vec<Device>, Renderer), super::Failure> {
     if let Some(folder) = &arguments.frames_out {
         std::fs::create_dir_all(folder).map_err(|error| Error::Output {
             path: folder.clone(),
             reason: error.to_string(),
         })?;
     }
-    let device = choose_device(arguments.device.device.as_deref())?;
-    let renderer = Renderer::with_options(&device, &arguments.device.options())?;
+    let devices = choose_devices(arguments.device.device.as_deref())?;
+    let renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     note(&format!("a cell takes {} s", arguments.seconds));
-    Ok((device, renderer))
+    Ok((devices, renderer))
+}
+
+/// Those of all devices.
+fn names(devices: &[Device]) -> String {
+    let names: Vec<&str> = devices.iter().map(|device| device.name.as_str()).collect();
+    names.join(" + ")
 }
 
 fn time(arguments: &BenchArguments) -> Duration {

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::args::CompareArguments;
 use super::progress::{Progress, catch_interrupts};
-use super::{Outcome, choose_device, note, print, print_json};
+use super::{Outcome, choose_devices, note, print, print_json};
 
 #[derive(Serialize)]
 struct Row {
@@ -43,8 +43,8 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
         scene.image = arguments.size.unwrap_or(scene.image);
         Ok(())
     })?;
-    let device = choose_device(arguments.device.device.as_deref())?;
-    let mut renderer = Renderer::with_options(&device, &arguments.device.options())?;
+    let devices = choose_devices(arguments.device.device.as_deref())?;
+    let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     catch_interrupts();
     note("the truth is computed in float64 first; --size makes it quicker");
     let mut exact = scene.clone();

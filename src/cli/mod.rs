@@ -73,20 +73,22 @@ fn exit_code(error: &Error) -> u8 {
     }
 }
 
-/// The device of `--device`, else of `ENERGYWAVE_DEVICE`, else the best; says on standard error which it is.
-fn choose_device(flag: Option<&str>) -> Result<Device, Failure> {
+/// The devices of `--device`, else of `ENERGYWAVE_DEVICE`, else the best; says on standard error which they are.
+fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
     let devices = Devices::discover();
     let variable = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_default();
     let choice = flag.or(Some(variable.as_str()).filter(|word| !word.is_empty()));
-    let device = match choice {
-        Some(word) => devices.select(word)?,
-        None => devices.best(),
+    let chosen = match choice {
+        Some(word) => devices.select_all(word)?,
+        None => vec![devices.best()],
     };
-    match devices.problem() {
-        Some(problem) if choice.is_none() => note(&format!("device: {device}: {problem}")),
-        _ => note(&format!("device: {device}")),
+    for device in &chosen {
+        match devices.problem() {
+            Some(problem) if choice.is_none() => note(&format!("device: {device}: {problem}")),
+            _ => note(&format!("device: {device}")),
+        }
     }
-    Ok(device)
+    Ok(chosen)
 }
 
 /// One line on standard error.

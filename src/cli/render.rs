@@ -5,16 +5,16 @@ use energywave::{Error, Renderer, Scene};
 
 use super::args::RenderArguments;
 use super::progress::{Progress, catch_interrupts, was_interrupted};
-use super::{Outcome, choose_device};
+use super::{Outcome, choose_devices};
 
 pub fn run(arguments: RenderArguments) -> Outcome {
     OutputFormat::of(&arguments.output)?;
     let overrides = &arguments.overrides;
     let scene = Scene::from_file_with(&arguments.scene, |scene| overrides.apply(scene))?;
-    let device = choose_device(arguments.device.device.as_deref())?;
+    let devices = choose_devices(arguments.device.device.as_deref())?;
     catch_interrupts();
     let output = Output::create(&arguments.output)?;
-    let mut renderer = Renderer::with_options(&device, &arguments.device.options())?;
+    let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     let mut progress = Progress::new(arguments.quiet);
     let image = renderer.render_with_progress(&scene, &mut |share| progress.report(share))?;
     drop(progress);

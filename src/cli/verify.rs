@@ -4,34 +4,31 @@ use std::collections::BTreeSet;
 
 use energywave::scene::Method;
 use energywave::verify::{KnownRay, Row, built_in_rays, rays_from_file, verify};
-use energywave::{BuildOptions, Renderer};
+use energywave::{BuildOptions, Device, Renderer};
 
 use super::args::VerifyArguments;
-use super::{Failure, Outcome, choose_device, note, print, print_json};
+use super::{Failure, Outcome, choose_devices, note, print, print_json};
 
 pub fn run(arguments: &VerifyArguments) -> Outcome {
     let rays = match &arguments.rays {
         Some(path) => rays_from_file(path)?,
         None => built_in_rays()?,
     };
-    let device = choose_device(arguments.device.device.as_deref())?;
+    let devices = choose_devices(arguments.device.device.as_deref())?;
     // It is the longer test itself, and shows every value.
     let options = BuildOptions {
         skips_self_test: true,
         ..BuildOptions::default()
     };
-    let mut renderer = Renderer::with_options(&device, &options)?;
     name_unknown_kinds(&rays);
     let mut rows = Vec::new();
-    for method in [Method::Simpson, Method::Exact] {
-        let tolerance = arguments.tolerance;
-        rows.extend(verify(
-            &mut renderer,
-            &device.name,
-            &rays,
-            method,
-            tolerance,
-        )?);
+    for device in &devices {
+        let mut renderer = Renderer::with_options(device, &options)?;
+        let name = name_among(device, &devices);
+        for method in [Method::Simpson, Method::Exact] {
+            let tolerance = arguments.tolerance;
+            rows.extend(verify(&mut renderer, &name, &rays, method, tolerance)?);
+        }
     }
     if arguments.json {
         print_json(&rows)?;
@@ -39,6 +36,14 @@ pub fn run(arguments: &VerifyArguments) -> Outcome {
         print(&table(&rows))?;
     }
     judge(&rows)
+}
+
+/// Where there are several, with its index: equal devices have equal names.
+fn name_among(device: &Device, devices: &[Device]) -> String {
+    match devices {
+        [_] => device.name.clone(),
+        _ => format!("{}: {}", device.index, device.name),
+    }
 }
 
 fn name_unknown_kinds(rays: &[KnownRay]) {

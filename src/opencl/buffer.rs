@@ -7,7 +7,8 @@ use std::sync::Arc;
 use bytemuck::Pod;
 use opencl3::event::Event;
 use opencl3::memory::{
-    Buffer, CL_MAP_READ, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE, ClMem,
+    Buffer, CL_MAP_READ, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE,
+    CL_MEM_USE_HOST_PTR, ClMem,
 };
 use opencl3::types::{CL_FALSE, CL_TRUE, cl_mem};
 
@@ -74,6 +75,22 @@ impl<T: Pod> DeviceBuffer<T> {
         .map(Handle::new)
         .map_err(failed(&compute.device.name, "clEnqueueUnmapMemObject"))?;
         Ok(())
+    }
+
+    /// The host's memory as a buffer, for kernels to write.
+    ///
+    /// # Safety
+    /// Until the buffer is dropped, and every command that uses it is over, nobody else uses the memory.
+    pub(super) unsafe fn around(compute: &Compute, memory: &mut [T]) -> Result<Self> {
+        let flags = CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR;
+        let (pointer, len) = (memory.as_mut_ptr().cast::<c_void>(), memory.len());
+        // SAFETY: the memory has this length, and the caller leaves it to the buffer.
+        let buffer = unsafe { Buffer::create(&compute.context, flags, len, pointer) }
+            .map_err(failed(&compute.device.name, "clCreateBuffer"))?;
+        Ok(Self {
+            buffer: Handle::new(buffer),
+            len,
+        })
     }
 
     fn with_flags(compute: &Compute, what: &str, len: usize, flags: u64) -> Result<Self> {

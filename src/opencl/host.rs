@@ -106,7 +106,9 @@ impl Renderer {
             RendererBackend::OpenCl(renderer) => unsafe {
                 renderer.enqueue(scene, target, wait_list)
             },
-            RendererBackend::Reference { .. } => Err(unfit("queue", NO_HOST)),
+            RendererBackend::Several(_) | RendererBackend::Reference { .. } => {
+                Err(unfit("queue", NO_HOST))
+            }
         }
     }
 }

@@ -36,6 +36,18 @@ impl Wanted<'_> {
     }
 }
 
+/// An image that is cut at multiples of so many rows is the same to the bit as in one piece.
+pub(crate) fn grain_rows(scene: &Scene) -> u32 {
+    match has_tiles(scene) {
+        true => tiles::first_size(scene.image),
+        false => MOST_LANES >> scene.image.width.trailing_zeros().min(4),
+    }
+}
+
+fn has_tiles(scene: &Scene) -> bool {
+    scene.sampling() == Sampling::Tiles && scene.source_count() > 0
+}
+
 impl Job {
     /// `units`: the device's compute units.
     pub(super) fn new(
@@ -62,10 +74,10 @@ impl Job {
                 Wanted::Pixels(Output::Halves(_)) => Film::Halves,
                 Wanted::Pixels(_) | Wanted::Rays(_) => Film::Floats,
             },
-            rays: match scene.sampling() {
+            rays: match has_tiles(scene) {
                 _ if is_listed => Rays::Listed,
-                Sampling::Tiles if scene.source_count() > 0 => Rays::Tiles,
-                Sampling::Pixels | Sampling::Tiles => Rays::Pixels,
+                true => Rays::Tiles,
+                false => Rays::Pixels,
             },
         };
         let first_tile_size = tiles::first_size(scene.image);

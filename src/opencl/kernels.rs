@@ -136,6 +136,11 @@ impl Kernels {
         self.0.remove(&task);
     }
 
+    /// How many were built.
+    pub(super) fn count(&self) -> usize {
+        self.0.len()
+    }
+
     /// A kernel that was made sure of.
     pub(super) fn get(&self, task: Task) -> Result<&Handle<Kernel>> {
         self.0.get(&task).ok_or_else(|| {

@@ -13,6 +13,7 @@ mod failure;
 mod handle;
 mod host;
 mod host_image;
+mod in_place;
 mod job;
 mod kernels;
 mod key;
@@ -33,6 +34,7 @@ pub use cache::KernelCache;
 pub use compute::Compute;
 pub use discover::{Discovery, OpenClDevice, discover};
 pub use host::HostTarget;
+pub(crate) use job::grain_rows;
 pub use key::ProgramKey;
 pub use mapped::Mapped;
 pub use program::{Argument, BuildOptions, Program};
@@ -45,6 +47,7 @@ mod tests {
 
     use super::*;
     use crate::bench::Table;
+    use crate::scene::Method;
 
     #[test]
     fn an_image_larger_than_a_buffer_comes_in_bands() {
@@ -59,7 +62,7 @@ mod tests {
                 let mut target = vec![0.0; 96 * stride];
                 let nothing = &mut |_: f32| ControlFlow::Continue(());
                 renderer
-                    .render_into(&scene, &mut target, stride, nothing)
+                    .render_rows(&scene, 0..96, &mut target, stride, nothing)
                     .unwrap();
                 let rows = target.chunks(stride).map(|row| row[..400].to_vec());
                 images.push(rows.collect::<Vec<_>>());
@@ -67,5 +70,33 @@ mod tests {
         }
         assert!(images.windows(2).all(|pair| pair[0] == pair[1]));
         assert!(images[0].iter().flatten().all(|value| *value > 0.0));
+    }
+
+    #[test]
+    fn an_image_cut_between_tiles_is_the_same_to_the_bit_and_cut_elsewhere_is_not() {
+        let mut scene = Table::Torus.scene(160, 64);
+        scene.integration.method = Method::Exact;
+        let device = discover().devices.swap_remove(0);
+        let mut renderer = OpenClRenderer::new(&device, &BuildOptions::default()).unwrap();
+        let mut draw = |cut: u32, is_in_place: bool| {
+            renderer.writes_in_place = is_in_place;
+            let mut target = vec![0.0; 160 * 640];
+            let (upper, lower) = target.split_at_mut(cut as usize * 640);
+            let nothing = &mut |_: f32| ControlFlow::Continue(());
+            for (rows, part) in [(0..cut, upper), (cut..160, lower)] {
+                renderer
+                    .render_rows(&scene, rows, part, 640, nothing)
+                    .unwrap();
+            }
+            target
+        };
+        let whole = draw(0, false);
+        for cut in [0, grain_rows(&scene), 128, 160] {
+            assert!(
+                draw(cut, true) == whole && draw(cut, false) == whole,
+                "{cut}"
+            );
+        }
+        assert!(draw(60, true) != whole && draw(60, false) != whole);
     }
 }

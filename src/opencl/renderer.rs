@@ -1,13 +1,14 @@
 //! Renders scenes on an OpenCL device: uploads what changed, launches the kernels, reads the image back.
 
 use std::ops::{ControlFlow, Range};
+use std::time::{Duration, Instant};
 
 use opencl3::command_queue::CommandQueue;
 
 use super::counts::Counts;
 use super::depths::Depths;
 use super::handle::Handle;
-use super::job::{Job, MOST_LANES, Wanted};
+use super::job::{Job, MOST_LANES, Wanted, grain_rows};
 use super::kernels::{Kernels, Variant};
 use super::launch::{Launched, Output};
 use super::lists::Lists;
@@ -23,7 +24,7 @@ use crate::renderer::FrameCost;
 use crate::scene::Scene;
 
 /// A pixel of the output: linear RGBA.
-type Pixel = [f32; 4];
+pub(super) type Pixel = [f32; 4];
 
 /// A device with its kernels and buffers, which are kept from frame to frame.
 #[derive(Debug)]
@@ -42,6 +43,8 @@ pub struct OpenClRenderer {
     pub(super) unwatched: Vec<Launched>,
     /// The host's queue, if frames are enqueued for one.
     pub(super) host_queue: Option<Handle<CommandQueue>>,
+    /// Whether the device itself writes the caller's memory where it can; else what it wrote is copied there.
+    pub(crate) writes_in_place: bool,
     pub(super) compute: Compute,
 }
 
@@ -73,6 +76,7 @@ impl OpenClRenderer {
             cost: FrameCost::default(),
             unwatched: Vec::new(),
             host_queue: None,
+            writes_in_place: false,
             options: options.clone(),
             compute,
         }
@@ -83,29 +87,43 @@ impl OpenClRenderer {
         self.compute.device()
     }
 
-    /// Renders a valid scene into `target`, RGBA by rows that begin `stride` values apart. `progress` hears the finished
-    /// share and may stop the work.
-    pub(crate) fn render_into(
+    /// Renders some rows of a valid scene into `target`, RGBA by rows that begin `stride` values apart. `progress` hears the
+    /// finished share and may stop the work. Gives the time from the first launch on, unless kernels had to be built.
+    pub(crate) fn render_rows(
         &mut self,
         scene: &Scene,
+        rows: Range<u32>,
         target: &mut [f32],
         stride: usize,
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
-    ) -> Result<()> {
+    ) -> Result<Option<Duration>> {
+        let built = self.kernels.count();
         let job = self.job(scene, Output::Own)?;
-        let row = 4 * scene.image.width as usize;
-        let grain = job.work.grain.max(MOST_LANES * scene.image.width); // whole rows
+        let is_built = self.kernels.count() == built;
+        let width = scene.image.width as usize;
+        let [begin, end] = [rows.start, rows.end].map(|row| row as usize * width);
+        let begun = Instant::now();
+        if stride == 4 * width {
+            let target: &mut [Pixel] = bytemuck::cast_slice_mut(&mut target[..4 * (end - begin)]);
+            if self.reaches(target) {
+                self.run_in_place(&job, begin..end, target, progress)?;
+                return Ok(is_built.then(|| begun.elapsed()));
+            }
+        }
         let mut read = |output: &DeviceBuffer<Pixel>, compute: &Compute, band: Range<usize>| {
-            let first = band.start / scene.image.width as usize * stride;
-            match stride == row {
+            let first = (band.start - begin) / width * stride;
+            let target = &mut target[first..];
+            match stride == 4 * width {
                 true => output.read(
                     compute,
-                    bytemuck::cast_slice_mut(&mut target[4 * band.start..4 * band.end]),
+                    bytemuck::cast_slice_mut(&mut target[..4 * band.len()]),
                 ),
-                false => output.read_rows(compute, band.len(), row, &mut target[first..], stride),
+                false => output.read_rows(compute, band.len(), 4 * width, target, stride),
             }
         };
-        self.run(&job, scene.image.pixels(), grain, &mut read, progress)
+        let grain = grain_rows(scene) * scene.image.width;
+        self.run(&job, begin..end, grain, &mut read, progress)?;
+        Ok(is_built.then(|| begun.elapsed()))
     }
 
     /// What the last frame cost.
@@ -138,7 +156,7 @@ impl OpenClRenderer {
             output.read(compute, &mut radiances[band])
         };
         let nothing = &mut |_: f32| ControlFlow::Continue(());
-        self.run(&job, rays.len(), MOST_LANES, &mut read, nothing)?;
+        self.run(&job, 0..rays.len(), MOST_LANES, &mut read, nothing)?;
         Ok(radiances)
     }
 
@@ -170,20 +188,21 @@ impl OpenClRenderer {
         Ok(job)
     }
 
-    /// Renders so many pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read.
-    fn run(
+    /// Renders pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read.
+    pub(super) fn run(
         &mut self,
         job: &Job,
-        pixels: usize,
+        pixels: Range<usize>,
         grain: u32,
         read: &mut Read<'_>,
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
-        let band_len = self.band_len(pixels, grain)?;
-        self.begin(job, pixels)?;
-        for begin in (0..pixels).step_by(band_len) {
-            let band = begin..pixels.min(begin + band_len);
-            let mut report = |pixel: u32| progress(pixel as f32 / pixels as f32);
+        let band_len = self.band_len(pixels.len(), grain)?;
+        self.begin(job, pixels.len())?;
+        for begin in pixels.clone().step_by(band_len) {
+            let band = begin..pixels.end.min(begin + band_len);
+            let share = |pixel: u32| (pixel as usize - pixels.start) as f32 / pixels.len() as f32;
+            let mut report = |pixel: u32| progress(share(pixel));
             let last = self.launch_band(job, band.start as u32..band.end as u32, &mut report)?;
             read(self.output()?, &self.compute, band)?;
             self.settle(job, last)?;
@@ -232,17 +251,19 @@ impl OpenClRenderer {
     /// Makes sure of an output buffer for `pixels` pixels, or for as many as the device's limits allow, a multiple of
     /// `grain`.
     fn band_len(&mut self, pixels: usize, grain: u32) -> Result<usize> {
-        let device = &self.compute.device;
-        // A quarter of the memory leaves room for the sources and for everyone else.
-        let bytes = device
-            .max_allocation_bytes
-            .min(device.memory_bytes / 4)
-            .min(MOST_BAND_BYTES);
         let grain = grain as usize;
-        let grains = (bytes as usize / size_of::<Pixel>() / grain).max(1);
+        let grains = (self.most_output_bytes() as usize / size_of::<Pixel>() / grain).max(1);
         let wanted = pixels.min(grains * grain);
         self.reserve_output(wanted)?;
         Ok(wanted.max(1))
+    }
+
+    /// Of an output buffer.
+    pub(super) fn most_output_bytes(&self) -> u64 {
+        let device = &self.compute.device;
+        // A quarter of the memory leaves room for the sources and for everyone else.
+        let bytes = device.max_allocation_bytes.min(device.memory_bytes / 4);
+        bytes.min(MOST_BAND_BYTES)
     }
 
     /// Makes sure of an output buffer for so many pixels.

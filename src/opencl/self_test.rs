@@ -111,7 +111,8 @@ impl OpenClRenderer {
             (_, Film::Floats) => {
                 let values = bytemuck::cast_slice_mut(&mut pixels);
                 let nothing = &mut |_: f32| std::ops::ControlFlow::Continue(());
-                self.render_into(scene, values, 4 * size.width as usize, nothing)?;
+                let stride = 4 * size.width as usize;
+                self.render_rows(scene, 0..size.height, values, stride, nothing)?;
             }
             (_, Film::Halves) => {
                 let halves = DeviceBuffer::new(&self.compute, "the test", 4 * size.pixels())?;
