@@ -55,6 +55,13 @@ Channels channels_of(const Canvas *const canvas, const uint index IMAGE_PARAMETE
 }
 #endif
 
+// What half floats hold, where pixels become that.
+#ifdef HALF_RANGE
+#define IN_RANGE(light) min(light, 65504.0f)
+#else
+#define IN_RANGE(light) (light)
+#endif
+
 // How many lanes have a pixel, when so many pixels are left.
 #ifndef LAST_LANES
 #define LAST_LANES(left) min(left, (uint)LANES)
@@ -84,15 +91,15 @@ void store_half(const Channels channels, const HALF_FLOATS red, const HALF_FLOAT
     pairv first = (pairv)(0), second = (pairv)(0);
     first.even = as_pairv(red_green).lo, first.odd = as_pairv(blue_alpha).lo;
     second.even = as_pairv(red_green).hi, second.odd = as_pairv(blue_alpha).hi;
-    STORE(LANES)(as_floatv(first), 0, channels);
-    STORE(LANES)(as_floatv(second), 1, channels);
+    STORE(LANES)(IN_RANGE(as_floatv(first)), 0, channels);
+    STORE(LANES)(IN_RANGE(as_floatv(second)), 1, channels);
 }
 #endif
 
 // Writes all lanes, half of them in each of two places.
 INLINE void store_all_pixels(const Channels first_half, const Channels second_half, const float3v color) {
 #if LANES == 1
-    STORE(4)((float4)(color.x, color.y, color.z, 1.0f), 0, first_half);
+    STORE(4)(IN_RANGE((float4)(color.x, color.y, color.z, 1.0f)), 0, first_half);
 #else
     store_half(first_half, color.x.lo, color.y.lo, color.z.lo);
     store_half(second_half, color.x.hi, color.y.hi, color.z.hi);
@@ -105,12 +112,12 @@ INLINE void store_pixel(const Canvas *const canvas, const uint index, const floa
 #ifdef IMAGE
     if (canvas->is_last) {
         const int place = (int)(canvas->first + index), width = (int)canvas->width;
-        write_imagef(image, (int2)(place % width, place / width), pixel);
+        write_imagef(image, (int2)(place % width, place / width), IN_RANGE(pixel));
         return;
     }
 #elif defined(HALVES)
     if (canvas->is_last) {
-        vstore_half4(pixel, canvas->first + index, image);
+        vstore_half4(IN_RANGE(pixel), canvas->first + index, image);
         return;
     }
 #endif

@@ -79,9 +79,16 @@ fn a_call_that_fails_is_an_error_and_the_hosts_next_frame_is_right() {
                     assert!(nth > 1 || is_for_images && is_buffer, "{call}: never");
                     break;
                 }
-                let words = outcome.map(drop).unwrap_err().to_string();
-                assert!(CALLS.iter().any(|call| words.contains(call)), "{words}");
-                assert!(words.contains(", -5)"), "{words}");
+                // What only asks how earlier frames went, or flushes once more, is no reason to draw nothing.
+                let is_minor = call.starts_with("clGet") || call == "clFlush";
+                match outcome {
+                    Ok(event) => assert!(is_minor && event.wait().is_ok(), "{call}, {nth}"),
+                    Err(error) => {
+                        let words = error.to_string();
+                        assert!(CALLS.iter().any(|call| words.contains(call)), "{words}");
+                        assert!(words.contains(", -5)"), "{words}");
+                    }
+                }
                 let event = draw(&second).unwrap();
                 let found = host.read(target, second.image, &[&event]);
                 assert!(found == expected.as_slice(), "{call}, {nth}");
@@ -248,4 +255,29 @@ fn what_does_not_fit_is_refused_before_anything_is_enqueued() {
     let mut own = Renderer::new(&common::device()).unwrap();
     let error = enqueue(&mut own, &scene, (&good).into(), &[]).unwrap_err();
     assert!(error.to_string().contains("made without one"), "{error}");
+}
+
+#[test]
+fn an_event_of_the_host_that_fails_fails_the_frame_and_nothing_aborts() {
+    let _layer = Layer::new();
+    let [scene, _] = film();
+    for is_image in [true, false] {
+        // PoCL 3.1 may never end what comes on a queue after a command that failed: each has a host of its own.
+        let host = Host::new(0);
+        let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
+        let image = host.image(scene.image, CL_FLOAT);
+        let buffer = host.buffer(CL_MEM_READ_WRITE, scene.image);
+        let target = match is_image {
+            true => HostTarget::from(&image),
+            false => HostTarget::from(&buffer),
+        };
+        let gate = Event::new(create_user_event(host.context.get()).unwrap());
+        let event = enqueue(&mut renderer, &scene, target, &[gate.get()]).unwrap();
+        set_user_event_status(gate.get(), OUT_OF_RESOURCES).unwrap();
+        assert!(event.wait().is_err());
+        // A wait for what has failed already may never end.
+        let error = enqueue(&mut renderer, &scene, target, &[gate.get()]).unwrap_err();
+        let words = "wait list: an event of it has failed";
+        assert!(error.to_string().contains(words), "{error}");
+    }
 }

@@ -1,6 +1,5 @@
 //! Copies to the device that are under way, each with the memory that it reads.
 
-use opencl3::error_codes::ClError;
 use opencl3::event::{CL_COMPLETE, Event};
 
 use super::Compute;
@@ -22,31 +21,22 @@ impl<T> Copies<T> {
         self.0.push((event, data));
     }
 
-    /// Lets go of what is over, without waiting.
-    ///
-    /// # Errors
-    /// [`crate::Error::Device`] if a copy failed.
-    pub(super) fn reap(&mut self, compute: &Compute) -> Result<()> {
-        let mut outcome = Ok(());
-        self.0
-            .retain(|(event, _)| match event.command_execution_status() {
-                Ok(status) if status.0 < CL_COMPLETE => {
-                    outcome = Err(ClError(status.0));
-                    false
-                }
-                Ok(status) => status.0 != CL_COMPLETE,
-                Err(code) => {
-                    outcome = Err(code);
-                    true // the question failed: the copy may go on
-                }
-            });
-        outcome.map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))
+    /// Lets go of what is over, without waiting: whether no copy failed.
+    pub(super) fn reap(&mut self) -> bool {
+        let mut is_well = true;
+        self.0.retain(|(event, _)| {
+            let is_over = state(event);
+            is_well &= is_over.is_ok();
+            // Where the question failed, the copy may go on.
+            matches!(is_over, Ok(false) | Err(Unknown::Asking))
+        });
+        is_well
     }
 
     /// Waits for all of them. Once a launch that reads what was copied is over, this costs nothing.
     ///
     /// # Errors
-    /// As [`Copies::reap`].
+    /// [`crate::Error::Device`] if a copy failed.
     pub(super) fn wait(&mut self, compute: &Compute) -> Result<()> {
         let mut outcome = Ok(());
         for (event, _) in self.0.drain(..) {
@@ -56,12 +46,20 @@ impl<T> Copies<T> {
     }
 }
 
-/// Whether a command is over; an error if it failed.
-pub(super) fn state(event: &Event) -> std::result::Result<bool, ClError> {
-    match event.command_execution_status()?.0 {
-        CL_COMPLETE => Ok(true),
-        code @ ..0 => Err(ClError(code)),
-        _ => Ok(false),
+/// Why nothing is known of what a command did.
+pub(super) enum Unknown {
+    /// It failed.
+    Command,
+    /// The driver does not answer.
+    Asking,
+}
+
+/// Whether a command is over.
+pub(super) fn state(event: &Event) -> std::result::Result<bool, Unknown> {
+    match event.command_execution_status() {
+        Ok(status) if status.0 < CL_COMPLETE => Err(Unknown::Command),
+        Ok(status) => Ok(status.0 == CL_COMPLETE),
+        Err(_) => Err(Unknown::Asking),
     }
 }
 

@@ -32,8 +32,8 @@ pub(super) struct Counts {
     /// Where the copy under way goes to.
     values: Box<[u32; LEN]>,
     under_way: Option<Handle<Event>>,
-    /// The last reset: kernels that count on from old numbers draw a wrong image.
-    resetting: Option<Handle<Event>>,
+    /// Resets: kernels that count on from old numbers draw a wrong image.
+    resetting: Vec<Handle<Event>>,
 }
 
 impl Counts {
@@ -47,7 +47,7 @@ impl Counts {
         const ZEROS: &[u32; LEN] = &[0; LEN];
         // SAFETY: constants stay.
         let event = unsafe { self.buffer.insert(buffer).begin_write(compute, ZEROS) }?;
-        self.resetting = Some(event);
+        self.resetting.push(event);
         Ok(())
     }
 
@@ -65,8 +65,16 @@ impl Counts {
     /// Waits for what is under way: the numbers last fetched.
     pub(super) fn settle(&mut self, compute: &Compute) -> Result<&[u32; LEN]> {
         self.wait_for_numbers(compute)?;
-        wait(compute, self.resetting.take(), "clEnqueueWriteBuffer")?;
-        Ok(&self.values)
+        let mut outcome = Ok(());
+        for event in self.resetting.drain(..) {
+            outcome = outcome.and(wait(compute, Some(event), "clEnqueueWriteBuffer"));
+        }
+        outcome.map(|()| &*self.values)
+    }
+
+    /// The resets since then, for who does not wait.
+    pub(super) fn take_resets(&mut self) -> Vec<Handle<Event>> {
+        std::mem::take(&mut self.resetting)
     }
 
     fn wait_for_numbers(&mut self, compute: &Compute) -> Result<()> {

@@ -29,7 +29,9 @@ impl Depths {
     /// Makes the device's depths equal to these before the next command of the queue begins; without an image, those
     /// there stay.
     pub(super) fn upload(&mut self, compute: &Compute, image: Option<&DepthImage>) -> Result<()> {
-        self.check(compute, Copies::reap)?;
+        if !self.copies.reap() {
+            self.image = None;
+        }
         let Some(image) = image else {
             return Ok(());
         };
@@ -51,18 +53,9 @@ impl Depths {
         Ok(())
     }
 
-    /// Waits for copies under way.
+    /// Waits for copies under way. After one that failed, the next upload repeats it.
     pub(super) fn settle(&mut self, compute: &Compute) -> Result<()> {
-        self.check(compute, Copies::wait)
-    }
-
-    /// After a copy that failed, the next upload repeats it.
-    fn check(
-        &mut self,
-        compute: &Compute,
-        look: impl FnOnce(&mut Copies<DepthImage>, &Compute) -> Result<()>,
-    ) -> Result<()> {
-        let outcome = look(&mut self.copies, compute);
+        let outcome = self.copies.wait(compute);
         if outcome.is_err() {
             self.image = None;
         }

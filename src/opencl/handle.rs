@@ -5,6 +5,7 @@ use std::ops::{Deref, DerefMut};
 
 use opencl3::command_queue::{CommandQueue, release_command_queue};
 use opencl3::context::{Context, context::release_context};
+use opencl3::device::{SubDevice, release_device};
 use opencl3::event::{Event, release_event};
 use opencl3::kernel::{Kernel, release_kernel};
 use opencl3::memory::{Buffer, ClMem, Image, release_mem_object};
@@ -89,3 +90,10 @@ released_by!(
     [] Image: release_mem_object,
     [T] Buffer<T>: release_mem_object,
 );
+
+impl Release for SubDevice {
+    unsafe fn release(&self) {
+        // SAFETY: as above.
+        let _ = unsafe { release_device(self.id()) };
+    }
+}

@@ -8,8 +8,9 @@ use std::fmt::Display;
 
 use opencl3::command_queue::{CommandQueue, retain_command_queue};
 use opencl3::context::{Context, context::retain_context};
+use opencl3::device::{SubDevice, retain_device};
 use opencl3::error_codes::ClError;
-use opencl3::event::{Event, retain_event};
+use opencl3::event::{CL_COMPLETE, Event, retain_event};
 use opencl3::memory::{
     Buffer, CL_FLOAT, CL_HALF_FLOAT, CL_MEM_OBJECT_BUFFER, CL_MEM_OBJECT_IMAGE2D, CL_MEM_READ_ONLY,
     CL_MEM_WRITE_ONLY, CL_RGBA, ClMem, Image, retain_mem_object,
@@ -113,6 +114,7 @@ impl Renderer {
     }
 }
 
+const MARKER: &str = "clEnqueueMarkerWithWaitList";
 const NO_HOST: &str = "this renderer was made without one; make it with Renderer::on_host";
 
 /// Something of the host's that does not fit.
@@ -158,8 +160,13 @@ impl OpenClRenderer {
             let reason = "its device has no compiler or does not tell its properties";
             unfit("queue", reason)
         })?;
-        let mut renderer = Self::with_compute(Compute::in_context(context, &device)?, options);
+        let id = device.handle.id();
+        // SAFETY: the queue has the device.
+        unsafe { asked("queue", retain_device(id).map_err(ClError)) }?;
+        let retained = Handle::new(SubDevice::new(id));
+        let mut renderer = Self::with_compute(Compute::in_context(context, &device)?, options)?;
         renderer.host_queue = Some(queue);
+        renderer.host_device = Some(retained);
         Ok(renderer)
     }
 
@@ -181,17 +188,20 @@ impl OpenClRenderer {
         unsafe { self.check_events(wait_list) }?;
         self.begin_after(wait_list)?;
         let in_place = match target {
-            HostTarget::Image(_) => ImageInPlace::map(&self.compute, &memory, scene.image)?,
+            HostTarget::Image(_) => {
+                let held = &mut self.held;
+                ImageInPlace::map(&self.compute, &memory, scene.image, held)?
+            }
             HostTarget::Buffer(_) => None,
         };
         let output = match (target, &in_place) {
             (HostTarget::Buffer(buffer), _) => Output::Buffer(buffer),
             (HostTarget::Image(_), Some(image)) => image.output(),
-            (HostTarget::Image(image), None) => Output::Image(image),
+            (HostTarget::Image(image), None) => Output::Image(image, has_halves(&memory)),
         };
         let launched = self.launch_frame(scene, output);
         let unmapped = match in_place {
-            Some(image) => image.unmap(&self.compute, &memory),
+            Some(image) => image.unmap(&self.compute, &memory, &mut self.held),
             None => Ok(()),
         };
         // Also what was launched before a failure draws into the target: what follows on the host's queue waits for it.
@@ -199,7 +209,7 @@ impl OpenClRenderer {
         match launched.and(unmapped) {
             Ok(()) => ended,
             Err(error) => {
-                drop(ended.map(Handle::new)); // in silence
+                self.held.extend(ended.map(Handle::new));
                 Err(error)
             }
         }
@@ -213,44 +223,44 @@ impl OpenClRenderer {
         }
     }
 
-    /// What follows on our queue waits for the host's.
-    fn begin_after(&self, wait_list: &[cl_event]) -> Result<()> {
+    /// What follows on our queue waits for what is on the host's, and for the list.
+    fn begin_after(&mut self, wait_list: &[cl_event]) -> Result<()> {
         let name = &self.compute.device.name;
         let host = self.host_queue()?;
-        // SAFETY: the events are alive, by the caller's promise.
-        let begin = unsafe { host.enqueue_marker_with_wait_list(wait_list) }
+        // With a list it would wait for that alone, on a queue out of order.
+        // SAFETY: nothing is waited for but what is on the queue.
+        let begin = unsafe { host.enqueue_marker_with_wait_list(&[]) }
             .map(Handle::new)
-            .map_err(failed(name, "clEnqueueMarkerWithWaitList"))?;
+            .map_err(failed(name, MARKER))?;
         // A queue waits for another's event only once that has been flushed.
         host.flush().map_err(failed(name, "clFlush"))?;
+        let events = [&[begin.get()], wait_list].concat();
         // No barrier: PoCL 3.1 never lets go of a queue's last one.
-        // SAFETY: the event is alive.
-        unsafe {
-            self.compute
-                .queue
-                .enqueue_marker_with_wait_list(&[begin.get()])
-        }
-        .map(Handle::new)
-        .map_err(failed(name, "clEnqueueMarkerWithWaitList"))?;
+        // SAFETY: the events are alive, by the caller's promise.
+        let all = unsafe { self.compute.queue.enqueue_marker_with_wait_list(&events) }
+            .map(Handle::new)
+            .map_err(failed(name, MARKER))?;
+        self.held.extend([begin, all]);
         Ok(())
     }
 
     /// What follows on the host's queue waits for ours: the event of that.
-    fn end(&self) -> Result<Event> {
+    fn end(&mut self) -> Result<Event> {
         let name = &self.compute.device.name;
-        let call = "clEnqueueMarkerWithWaitList";
         let queue = &self.compute.queue;
         // SAFETY: nothing is waited for but what is on the queue.
         let last = unsafe { queue.enqueue_marker_with_wait_list(&[]) }
             .map(Handle::new)
-            .map_err(failed(name, call))?;
+            .map_err(failed(name, MARKER))?;
         queue.flush().map_err(failed(name, "clFlush"))?;
+        let host = self.host_queue()?;
         // SAFETY: the event is alive.
-        unsafe {
-            self.host_queue()?
-                .enqueue_marker_with_wait_list(&[last.get()])
-        }
-        .map_err(failed(name, call))
+        let end = unsafe { host.enqueue_marker_with_wait_list(&[last.get()]) }
+            .map_err(failed(name, MARKER))?;
+        // For who waits on another queue. The host's next flush makes up for one that fails.
+        let _ = host.flush();
+        self.held.push(last);
+        Ok(end)
     }
 
     /// The target, retained, if a frame of this size can go there.
@@ -301,12 +311,14 @@ impl OpenClRenderer {
                 asked("wait list", retain_event(*event).map_err(ClError))?;
                 Handle::new(Event::new(*event))
             };
-            if asked("wait list", event.context())? != self.compute.context.get() {
-                return Err(unfit(
-                    "wait list",
-                    "an event of it belongs to another context",
-                ));
-            }
+            let fault = if asked("wait list", event.context())? != self.compute.context.get() {
+                "an event of it belongs to another context"
+            } else if asked("wait list", event.command_execution_status())?.0 < CL_COMPLETE {
+                "an event of it has failed"
+            } else {
+                continue;
+            };
+            return Err(unfit("wait list", fault));
         }
         Ok(())
     }
@@ -319,12 +331,24 @@ fn check_buffer(buffer: &Image, flags: u64, size: ImageSize) -> Result<()> {
         let reason = format!("{bytes} bytes; {width}x{height} float32 RGBA pixels need {needed}");
         return Err(unfit("buffer", reason));
     }
+    // Of a part of a larger buffer, where the part begins.
+    let pointer = asked("buffer", buffer.host_ptr())? as usize;
+    if !pointer.is_multiple_of(16) {
+        return Err(unfit("buffer", "its host pointer is no multiple of 16"));
+    }
     if flags & CL_MEM_WRITE_ONLY != 0 {
         // Where a frame takes several launches, each adds to what is there.
         let reason = "kernels may not read it (CL_MEM_WRITE_ONLY); use CL_MEM_READ_WRITE";
         return Err(unfit("buffer", reason));
     }
     Ok(())
+}
+
+fn has_halves(image: &Image) -> bool {
+    let formats = image.format().unwrap_or_default();
+    formats
+        .iter()
+        .any(|f| f.image_channel_data_type == CL_HALF_FLOAT)
 }
 
 fn check_image(image: &Image, size: ImageSize) -> Result<()> {

@@ -5,6 +5,7 @@
 use std::ffi::c_void;
 use std::ptr;
 
+use opencl3::event::Event;
 use opencl3::memory::{
     Buffer, CL_HALF_FLOAT, CL_MAP_READ, CL_MAP_WRITE_INVALIDATE_REGION, CL_MEM_HOST_NO_ACCESS,
     CL_MEM_HOST_READ_ONLY, CL_MEM_READ_WRITE, CL_MEM_USE_HOST_PTR, ClMem, Image, cl_image_format,
@@ -28,7 +29,12 @@ pub(super) struct ImageInPlace {
 
 impl ImageInPlace {
     /// Maps an image for what follows on our queue; `None` if kernels have to write it as an image.
-    pub(super) fn map(compute: &Compute, image: &Image, size: ImageSize) -> Result<Option<Self>> {
+    pub(super) fn map(
+        compute: &Compute,
+        image: &Image,
+        size: ImageSize,
+        events: &mut Vec<Handle<Event>>,
+    ) -> Result<Option<Self>> {
         let device = &compute.device;
         let is_here = device.device_type == DeviceType::Cpu && device.shares_host_memory;
         let formats = image.format().unwrap_or_default();
@@ -42,7 +48,7 @@ impl ImageInPlace {
         if !(is_here && is_dense && may_map) {
             return Ok(None);
         }
-        let (pointer, pitch) = enqueue_map(compute, image, size)?;
+        let (pointer, pitch) = enqueue_map(compute, image, size, events)?;
         let made = match pitch == row && pointer.align_offset(pixel) == 0 {
             // SAFETY: the memory is mapped for as long as the buffer is used.
             true => unsafe {
@@ -58,7 +64,7 @@ impl ImageInPlace {
                 buffer: Handle::new(buffer),
                 has_halves,
             })),
-            None => enqueue_unmap(compute, image.get(), pointer).map(|()| None),
+            None => enqueue_unmap(compute, image.get(), pointer, events).map(|()| None),
         }
     }
 
@@ -70,35 +76,44 @@ impl ImageInPlace {
     }
 
     /// Gives the image back, after what was enqueued.
-    pub(super) fn unmap(self, compute: &Compute, image: &Image) -> Result<()> {
+    pub(super) fn unmap(
+        self,
+        compute: &Compute,
+        image: &Image,
+        events: &mut Vec<Handle<Event>>,
+    ) -> Result<()> {
+        let seen = self.show_host(compute, events);
+        seen.and(enqueue_unmap(compute, image.get(), self.pointer, events))
+    }
+
+    /// What kernels wrote is certain to be at the host's pointer only once the buffer has been mapped.
+    fn show_host(&self, compute: &Compute, events: &mut Vec<Handle<Event>>) -> Result<()> {
         let mut pointer = ptr::null_mut();
-        let bytes = self.buffer.size().unwrap_or(0);
-        // What kernels wrote is certain to be at the host's pointer only once the buffer has been mapped.
+        let (buffer, bytes) = (&self.buffer, self.buffer.size().unwrap_or(0));
+        let (queue, name) = (&compute.queue, &compute.device.name);
         // SAFETY: the whole buffer is mapped; nobody reads through the pointer.
-        unsafe {
-            compute.queue.enqueue_map_buffer(
-                &self.buffer,
-                CL_FALSE,
-                CL_MAP_READ,
-                0,
-                bytes,
-                &mut pointer,
-                &[],
-            )
-        }
-        .map(Handle::new)
-        .map_err(failed(&compute.device.name, "clEnqueueMapBuffer"))?;
-        enqueue_unmap(compute, self.buffer.get(), pointer)?;
-        enqueue_unmap(compute, image.get(), self.pointer)
+        let mapped = unsafe {
+            queue.enqueue_map_buffer(buffer, CL_FALSE, CL_MAP_READ, 0, bytes, &mut pointer, &[])
+        };
+        let event = mapped
+            .map(Handle::new)
+            .map_err(failed(name, "clEnqueueMapBuffer"))?;
+        events.push(event);
+        enqueue_unmap(compute, self.buffer.get(), pointer, events)
     }
 }
 
 /// Where the image's first row is, and the bytes from there to the second.
-fn enqueue_map(compute: &Compute, image: &Image, size: ImageSize) -> Result<(*mut c_void, usize)> {
+fn enqueue_map(
+    compute: &Compute,
+    image: &Image,
+    size: ImageSize,
+    events: &mut Vec<Handle<Event>>,
+) -> Result<(*mut c_void, usize)> {
     let (mut pointer, mut pitch) = (ptr::null_mut(), 0);
     let (origin, region) = ([0; 3], [size.width as usize, size.height as usize, 1]);
     // SAFETY: the region is the whole image; the pointer is used by commands that come after this one.
-    unsafe {
+    let event = unsafe {
         compute.queue.enqueue_map_image(
             image,
             CL_FALSE,
@@ -113,13 +128,20 @@ fn enqueue_map(compute: &Compute, image: &Image, size: ImageSize) -> Result<(*mu
     }
     .map(Handle::new)
     .map_err(failed(&compute.device.name, "clEnqueueMapImage"))?;
+    events.push(event);
     Ok((pointer, pitch))
 }
 
-fn enqueue_unmap(compute: &Compute, memory: cl_mem, pointer: *mut c_void) -> Result<()> {
+fn enqueue_unmap(
+    compute: &Compute,
+    memory: cl_mem,
+    pointer: *mut c_void,
+    events: &mut Vec<Handle<Event>>,
+) -> Result<()> {
     // SAFETY: the memory is mapped there, and nobody uses the pointer after this.
-    unsafe { compute.queue.enqueue_unmap_mem_object(memory, pointer, &[]) }
+    let event = unsafe { compute.queue.enqueue_unmap_mem_object(memory, pointer, &[]) }
         .map(Handle::new)
         .map_err(failed(&compute.device.name, "clEnqueueUnmapMemObject"))?;
+    events.push(event);
     Ok(())
 }

@@ -70,7 +70,9 @@ impl Job {
             has_squares: sources.have_squares(),
             has_depth: scene.depth.is_some() && !is_listed,
             film: match wanted {
-                Wanted::Pixels(Output::Image(_)) => Film::Image,
+                Wanted::Pixels(Output::Image(_, has_halves)) => Film::Image {
+                    has_halves: *has_halves,
+                },
                 Wanted::Pixels(Output::Halves(_)) => Film::Halves,
                 Wanted::Pixels(_) | Wanted::Rays(_) => Film::Floats,
             },

@@ -34,7 +34,7 @@ pub(super) enum Film {
     /// A buffer of half floats.
     Halves,
     /// An image.
-    Image,
+    Image { has_halves: bool },
 }
 
 /// Which rays a kernel takes.
@@ -107,13 +107,17 @@ impl Kernels {
         let options_of = KIND_OPTIONS.into_iter().zip(task.kinds);
         let squares = (" -D INVERSE_SQUARES", task.has_squares);
         let depth = (" -D DEPTH", task.has_depth);
-        let image = (" -D IMAGE", task.film == Film::Image);
-        let halves = (" -D HALVES", task.film == Film::Halves);
-        for (option, is_there) in options_of.chain([squares, depth, image, halves]) {
+        for (option, is_there) in options_of.chain([squares, depth]) {
             if is_there {
                 definitions += option;
             }
         }
+        definitions += match task.film {
+            Film::Floats => "",
+            Film::Halves => " -D HALVES -D HALF_RANGE",
+            Film::Image { has_halves: true } => " -D IMAGE -D HALF_RANGE",
+            Film::Image { has_halves: false } => " -D IMAGE",
+        };
         if task.rays == Rays::Tiles {
             definitions += &tiles::definitions(tiles::workers(compute.device(), options));
         }

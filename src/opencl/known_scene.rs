@@ -1,4 +1,4 @@
-//! The small scene of the self-test: what the kernels of a task are built for, and nothing else.
+//! The small scenes of the self-test: what the kernels of a task are built for, and nothing else.
 
 use glam::DVec3;
 
@@ -10,41 +10,68 @@ use crate::scene::{
     Sphere, Torus,
 };
 
+/// Two tiles wide and high, with room for some that are smooth.
 const SIZE: ImageSize = ImageSize {
-    width: 24,
-    height: 16,
+    width: 76,
+    height: 72,
 };
 
-pub(super) fn known_scene(task: Task, integration: &Integration) -> Result<Scene> {
-    let mut scene = Scene::new(Camera::new(DVec3::new(0.4, -4.0, 1.7), DVec3::ZERO));
-    scene.image = SIZE;
-    scene.decay = Some(Decay {
+/// One with decay and depths along the rays, one with softening and depths along the axis.
+pub(super) fn known_scenes(task: Task) -> Result<[Scene; 2]> {
+    let mut near = Scene::new(Camera::new(DVec3::new(0.4, -4.0, 1.7), DVec3::ZERO));
+    near.decay = Some(Decay {
         alpha: 0.1,
         beta: 0.1,
     });
-    scene.integration = Integration {
+    let mut far = Scene::new(Camera::new(DVec3::new(-1.0, -9.0, 4.0), DVec3::ZERO));
+    far.integration.softening = 0.05;
+    for (scene, along) in [(&mut near, DepthAlong::Ray), (&mut far, DepthAlong::Axis)] {
+        scene.image = SIZE;
+        scene.integration = integration(task, scene.integration.softening);
+        add_sources(scene, task.kinds, Profile::Inverse);
+        if task.has_squares {
+            add_sources(scene, task.kinds, Profile::InverseSquare);
+        }
+        if task.has_depth {
+            let distance = scene.camera.eye.length();
+            let depth = |index: usize| depth(index, distance);
+            let values = (0..SIZE.pixels()).map(depth).collect();
+            scene.depth = Some(DepthImage::new(SIZE, along, values)?);
+        }
+    }
+    Ok([near, far])
+}
+
+/// The tolerance is the strictest that a task's kernels serve (see [`crate::pack::Rule`]), or one that float32 meets.
+fn integration(task: Task, softening: f64) -> Integration {
+    let tolerance = match task.method {
+        Variant::Exact { nodes: ..=4, .. } => 0.1,
+        Variant::Exact { .. } | Variant::Simpson => 1e-3,
+    };
+    Integration {
         method: match task.method {
             Variant::Simpson => Method::Simpson,
             Variant::Exact { .. } => Method::Exact,
         },
         divisions: 64,
-        tolerance: integration.tolerance,
+        tolerance,
         sampling: Some(match task.rays {
             Rays::Tiles => Sampling::Tiles,
             Rays::Pixels | Rays::Listed => Sampling::Pixels,
         }),
+        softening,
         ..Integration::default()
-    };
-    add_sources(&mut scene, task.kinds, Profile::Inverse);
-    if task.has_squares {
-        add_sources(&mut scene, task.kinds, Profile::InverseSquare);
     }
-    if task.has_depth {
-        let behind = |index: usize| 2.5 + 0.1 * (index % SIZE.width as usize) as f32;
-        let values = (0..SIZE.pixels()).map(behind).collect();
-        scene.depth = Some(DepthImage::new(SIZE, DepthAlong::Ray, values)?);
+}
+
+/// A slope up to the sources, with a hole and an edge.
+fn depth(index: usize, distance: f64) -> f32 {
+    let (row, column) = (index / SIZE.width as usize, index % SIZE.width as usize);
+    match row + column {
+        ..50 => (distance * (0.8 + 0.004 * row as f64 + 0.002 * column as f64)) as f32,
+        50..70 => f32::INFINITY,
+        _ => (1.1 * distance) as f32,
     }
-    Ok(scene)
 }
 
 /// One source of each of some kinds, in the order of [`Task::kinds`].

@@ -29,8 +29,8 @@ pub(super) enum Output {
     Buffer(cl_mem),
     /// Likewise, of half floats.
     Halves(cl_mem),
-    /// An image of someone else, for all pixels.
-    Image(cl_mem),
+    /// An image of someone else, for all pixels, and whether it has half floats.
+    Image(cl_mem, bool),
 }
 
 /// A launch under way.
@@ -98,7 +98,7 @@ impl OpenClRenderer {
     /// Launches all sources on all of a frame's pixels without waiting for anything. What is found finished later tells
     /// the pace.
     fn launch_all(&mut self, job: &Job, pixels: u32, output: Output) -> Result<()> {
-        self.learn()?;
+        self.learn();
         self.pace.begin_unwatched(&job.work, pixels);
         let mut pixel = 0;
         while pixel < pixels {
@@ -119,29 +119,23 @@ impl OpenClRenderer {
         Ok(())
     }
 
-    /// Learns from launches of earlier frames that are over.
-    fn learn(&mut self) -> Result<()> {
-        let compute = &self.compute;
-        let mut outcome = Ok(());
+    /// Learns from launches of earlier frames that are over. What failed has told its frame's event.
+    fn learn(&mut self) {
+        self.held.retain(|event| matches!(state(event), Ok(false)));
         for launched in std::mem::take(&mut self.unwatched) {
-            let states = launched.events.iter().map(|event| state(event));
-            match states.collect::<std::result::Result<Vec<bool>, _>>() {
-                Ok(states) if states.iter().all(|is_over| *is_over) => {
-                    let times = launched.events.iter().map(|e| run_time(compute, e));
-                    let time = times.sum::<Result<Duration>>();
-                    outcome = outcome.and(time.map(|time| {
-                        self.pace.measured(launched.evaluations, time);
-                    }));
-                }
-                Ok(_) => self.unwatched.push(launched),
-                Err(code) => {
-                    let name = &compute.device.name;
-                    let call = "clEnqueueNDRangeKernel";
-                    outcome = outcome.and(Err(super::failure::failed(name, call)(code)));
-                }
+            let mut states = launched.events.iter().map(|event| state(event));
+            if states.any(|is_over| matches!(is_over, Ok(false))) {
+                self.unwatched.push(launched);
+                continue;
+            }
+            let times = launched
+                .events
+                .iter()
+                .map(|event| run_time(&self.compute, event));
+            if let Ok(time) = times.sum::<Result<Duration>>() {
+                self.pace.measured(launched.evaluations, time);
             }
         }
-        outcome
     }
 
     fn launch(&mut self, job: &Job, part: &Part, slot: u32, output: Output) -> Result<Launched> {
@@ -155,8 +149,8 @@ impl OpenClRenderer {
         let pixels = match output {
             Output::Own => self.output()?.handle(),
             Output::Buffer(buffer) => buffer,
-            Output::Image(_) | Output::Halves(_) if is_whole => std::ptr::null_mut(),
-            Output::Image(_) | Output::Halves(_) => {
+            Output::Image(..) | Output::Halves(_) if is_whole => std::ptr::null_mut(),
+            Output::Image(..) | Output::Halves(_) => {
                 self.reserve_output(job.view.width as usize * job.view.height as usize)?;
                 self.output()?.handle()
             }
@@ -205,8 +199,10 @@ impl OpenClRenderer {
                 passes.iter().map(enqueue).collect::<Result<_>>()?
             }
         };
-        if self.counts_in(job) && output == Output::Own {
-            self.counts.fetch(&self.compute)?;
+        match output {
+            Output::Own if self.counts_in(job) => self.counts.fetch(&self.compute)?,
+            Output::Own => {}
+            _ => self.held.extend(self.counts.take_resets()),
         }
         Ok(Launched {
             events,
@@ -250,7 +246,7 @@ impl Output {
     /// What finished pixels go to, where that is not the buffer in which they are gathered.
     fn image(self) -> Option<RawMemory> {
         match self {
-            Self::Image(image) | Self::Halves(image) => Some(RawMemory(image)),
+            Self::Image(image, _) | Self::Halves(image) => Some(RawMemory(image)),
             Self::Own | Self::Buffer(_) => None,
         }
     }

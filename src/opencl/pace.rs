@@ -11,6 +11,9 @@ const TARGET: Duration = Duration::from_millis(40);
 /// Field evaluations of the first launch, before anything was measured: some milliseconds on one slow core.
 const FIRST_EVALUATIONS: f64 = 4e6;
 
+/// Less is never aimed at.
+const LEAST_EVALUATIONS: f64 = 1e4;
+
 /// Growth of the launches from one to the next.
 const MOST_GROWTH: f64 = 16.0;
 
@@ -29,14 +32,20 @@ impl Pace {
         }
     }
 
+    /// As if the device had taken seconds for little.
+    pub(super) fn slow() -> Self {
+        Self {
+            evaluations: LEAST_EVALUATIONS,
+            ..Self::new()
+        }
+    }
+
     /// Begins a frame: what was measured holds for scenes of the same kinds of sources.
     pub(super) fn begin(&mut self, sources: &Sources) {
         let kinds = source_counts(sources).map(|count| count > 0);
         if kinds != self.kinds {
-            *self = Self {
-                kinds,
-                ..Self::new()
-            };
+            let evaluations = self.evaluations.min(FIRST_EVALUATIONS);
+            *self = Self { evaluations, kinds };
         }
     }
 
@@ -48,7 +57,7 @@ impl Pace {
         }
         // A launch much below the pace says more about the overhead than about the device, unless it took too long.
         if evaluations > 0.1 * self.evaluations || time > TARGET {
-            self.evaluations = possible.clamp(1e4, MOST_GROWTH * self.evaluations);
+            self.evaluations = possible.clamp(LEAST_EVALUATIONS, MOST_GROWTH * self.evaluations);
         }
     }
 

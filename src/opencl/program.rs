@@ -48,6 +48,26 @@ pub struct BuildOptions {
     pub cache: KernelCache,
 }
 
+impl BuildOptions {
+    /// # Errors
+    /// [`Error::Unsupported`] for numbers that kernels cannot be built for.
+    pub(super) fn check(&self) -> Result<()> {
+        let wrong = |what: &str, found: u32, right: &str| {
+            let message = format!("build options: {found} {what}; {right}");
+            Err(Error::Unsupported(message))
+        };
+        match (self.lanes, self.tile_workers) {
+            (Some(lanes), _) if ![1, 4, 8, 16].contains(&lanes) => {
+                wrong("lanes", lanes, "1, 4, 8 or 16")
+            }
+            (_, Some(workers)) if ![1, 2, 4, 8, 16].contains(&workers) => {
+                wrong("work-items a tile", workers, "1, 2, 4, 8 or 16")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// A built program.
 #[derive(Debug)]
 pub struct Program {

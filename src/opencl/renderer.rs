@@ -4,6 +4,8 @@ use std::ops::{ControlFlow, Range};
 use std::time::{Duration, Instant};
 
 use opencl3::command_queue::CommandQueue;
+use opencl3::device::SubDevice;
+use opencl3::event::Event;
 
 use super::counts::Counts;
 use super::depths::Depths;
@@ -41,6 +43,10 @@ pub struct OpenClRenderer {
     pub(super) cost: FrameCost,
     /// Launches of frames that nobody waited for.
     pub(super) unwatched: Vec<Launched>,
+    /// Other commands of such frames: PoCL 3.1 aborts where an event fails that was let go before it was over.
+    pub(super) held: Vec<Handle<Event>>,
+    /// The host's device, which may be a part of one.
+    pub(super) host_device: Option<Handle<SubDevice>>,
     /// The host's queue, if frames are enqueued for one.
     pub(super) host_queue: Option<Handle<CommandQueue>>,
     /// Whether the device itself writes the caller's memory where it can; else what it wrote is copied there.
@@ -60,11 +66,12 @@ impl OpenClRenderer {
     /// # Errors
     /// [`Error::Device`] if the driver refuses.
     pub fn new(device: &OpenClDevice, options: &BuildOptions) -> Result<Self> {
-        Ok(Self::with_compute(Compute::new(device)?, options))
+        Self::with_compute(Compute::new(device)?, options)
     }
 
-    pub(super) fn with_compute(compute: Compute, options: &BuildOptions) -> Self {
-        Self {
+    pub(super) fn with_compute(compute: Compute, options: &BuildOptions) -> Result<Self> {
+        options.check()?;
+        Ok(Self {
             kernels: Kernels::default(),
             lanes: options.lanes.unwrap_or(compute.device.lanes),
             lists: Lists::new(),
@@ -75,11 +82,13 @@ impl OpenClRenderer {
             pace: Pace::new(),
             cost: FrameCost::default(),
             unwatched: Vec::new(),
+            held: Vec::new(),
+            host_device: None,
             host_queue: None,
             writes_in_place: false,
             options: options.clone(),
             compute,
-        }
+        })
     }
 
     /// The device's properties.
@@ -173,7 +182,7 @@ impl OpenClRenderer {
         let job = Job::new(scene, rule, view, sources, &wanted, units);
         let (compute, options) = (&self.compute, &self.options);
         if let Some(built) = self.kernels.prepare(compute, options, job.task, &rule)? {
-            self.self_test(job.task, built, &scene.integration)?;
+            self.self_test(job.task, built)?;
         }
         let nodes = match job.task.method {
             Variant::Simpson => {
