@@ -114,7 +114,7 @@ fn read(
 /// `GL_RGBA32F` or `GL_RGBA16F` and of the scene's size.
 ///
 /// # Safety
-/// `texture` is alive. GL is done with it (`glFinish`, or a fence that was waited for), and leaves it alone until the
+/// `texture` is alive, and the queue in order. GL is done with it (`glFinish`, or a fence that was waited for), and leaves it alone until the
 /// event that is returned is over.
 pub unsafe fn draw_into_gl_texture(
     renderer: &mut Renderer,
@@ -125,9 +125,13 @@ pub unsafe fn draw_into_gl_texture(
     let textures = [texture.cast_const()];
     // SAFETY: the caller's promise, three times.
     unsafe {
-        let acquired = queue.enqueue_acquire_gl_objects(&textures, &[])?;
-        let drawn = renderer.enqueue(scene, HostTarget::Image(texture), &[acquired.get()])?;
-        Ok(queue.enqueue_release_gl_objects(&textures, &[drawn.get()])?)
+        queue.enqueue_acquire_gl_objects(&textures, &[])?;
+        // In order: what comes on the queue later waits for the frame. Also after an error the texture goes back.
+        let drawn = renderer.enqueue(scene, HostTarget::Image(texture), &[]);
+        let released = queue.enqueue_release_gl_objects(&textures, &[])?;
+        queue.flush()?; // or GL may wait forever
+        drawn?;
+        Ok(released)
     }
 }
 
@@ -137,7 +141,7 @@ pub unsafe fn draw_into_gl_texture(
 /// `VkSemaphore`s, imported by `clCreateSemaphoreWithPropertiesKHR`.
 ///
 /// # Safety
-/// All are alive. Vulkan signals the first when it is done with the image, and leaves it alone until the second is
+/// All are alive, and the queue in order. Vulkan signals the first when it is done with the image, and leaves it alone until the second is
 /// signalled.
 pub unsafe fn draw_into_vulkan_image(
     renderer: &mut Renderer,
@@ -149,14 +153,14 @@ pub unsafe fn draw_into_vulkan_image(
     let images = [image.cast_const()];
     // SAFETY: the caller's promise, five times; binary semaphores have no payload.
     unsafe {
-        let ready = queue.enqueue_wait_semaphores_khr(&[vulkan_is_done], ptr::null(), &[])?;
-        let acquired = queue.enqueue_acquire_external_mem_objects_khr(&images, &[ready.get()])?;
-        let drawn = renderer.enqueue(scene, HostTarget::Image(image), &[acquired.get()])?;
-        let released = queue.enqueue_release_external_mem_objects_khr(&images, &[drawn.get()])?;
-        Ok(queue.enqueue_signal_semaphores_khr(
-            &[opencl_is_done],
-            ptr::null(),
-            &[released.get()],
-        )?)
+        queue.enqueue_wait_semaphores_khr(&[vulkan_is_done], ptr::null(), &[])?;
+        queue.enqueue_acquire_external_mem_objects_khr(&images, &[])?;
+        // In order: what comes on the queue later waits for the frame. Also after an error Vulkan gets its image back.
+        let drawn = renderer.enqueue(scene, HostTarget::Image(image), &[]);
+        queue.enqueue_release_external_mem_objects_khr(&images, &[])?;
+        let done = queue.enqueue_signal_semaphores_khr(&[opencl_is_done], ptr::null(), &[])?;
+        queue.flush()?; // or Vulkan may wait forever
+        drawn?;
+        Ok(done)
     }
 }
