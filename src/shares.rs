@@ -123,7 +123,8 @@ mod tests {
             let ranges = shares.split(rows, grain);
             assert_eq!((ranges[0].start, ranges[ranges.len() - 1].end), (0, rows));
             assert!(ranges.windows(2).all(|pair| pair[0].end == pair[1].start));
-            let is_whole = |range: &Range<u32>| range.start % grain == 0 || range.is_empty();
+            let is_whole =
+                |range: &Range<u32>| range.start.is_multiple_of(grain) || range.is_empty();
             assert!(ranges.iter().all(is_whole));
             let seconds =
                 |(range, speed): (&Range<u32>, &f64)| range.clone().map(&cost).sum::<f64>() / speed;
