@@ -3,8 +3,8 @@
 #include "lanes.h"
 #include "types.h"
 
-// Where the pixels of a launch go: a buffer, by rows. Built with -D IMAGE, the last launch of a pixel writes it to an
-// image, and the buffer only has what earlier ones have gathered.
+// Where the pixels of a launch go: a buffer, by rows. Built with -D IMAGE or -D HALVES, the last launch of a pixel
+// writes it to an image or to half floats instead, and the buffer only has what earlier ones have gathered.
 typedef struct {
     __global float4 *pixels; // from the launch's first on
     uint first, width;       // its number in the image, and the image's width
@@ -16,12 +16,43 @@ Canvas canvas_of(__global float4 *const buffer, const Launch *const launch, cons
     return canvas;
 }
 
-#ifdef IMAGE
+#if defined(IMAGE)
 #define IMAGE_PARAMETER , __write_only image2d_t image
+#define IMAGE_ARGUMENT , image
+#elif defined(HALVES)
+#define IMAGE_PARAMETER , __global half *const image
 #define IMAGE_ARGUMENT , image
 #else
 #define IMAGE_PARAMETER
 #define IMAGE_ARGUMENT
+#endif
+
+// Vectors of channels, and where those of pixels that are stored as a whole go.
+#ifdef HALVES
+typedef __global half *Channels;
+#define STORE(n) JOIN(vstore_half, n)
+#else
+typedef __global float *Channels;
+#define STORE(n) JOIN(vstore, n)
+#endif
+
+#if !defined(NO_SHUFFLES) && !defined(IMAGE)
+#define STORES_WHOLE
+bool stores_whole(const Canvas *const canvas) {
+#ifdef HALVES
+    return canvas->is_last && !canvas->accumulates;
+#else
+    return !canvas->accumulates;
+#endif
+}
+
+Channels channels_of(const Canvas *const canvas, const uint index IMAGE_PARAMETER) {
+#ifdef HALVES
+    return image + 4u * (canvas->first + index);
+#else
+    return (Channels)(canvas->pixels + index);
+#endif
+}
 #endif
 
 // How many lanes have a pixel, when so many pixels are left.
@@ -47,23 +78,21 @@ typedef ulong2 pairv;
 
 // Half the lanes' pixels from their channels: red with green and blue with alpha, then pairs with pairs. Said element
 // by element the same costs a torus of 64 divisions a tenth of its frame.
-void store_half(__global float4 *const pixels, const HALF_FLOATS red, const HALF_FLOATS green, const HALF_FLOATS blue) {
+void store_half(const Channels channels, const HALF_FLOATS red, const HALF_FLOATS green, const HALF_FLOATS blue) {
     floatv red_green = splat(0.0f), blue_alpha = splat(1.0f);
     red_green.even = red, red_green.odd = green, blue_alpha.even = blue;
     pairv first = (pairv)(0), second = (pairv)(0);
     first.even = as_pairv(red_green).lo, first.odd = as_pairv(blue_alpha).lo;
     second.even = as_pairv(red_green).hi, second.odd = as_pairv(blue_alpha).hi;
-    __global float *const values = (__global float *)pixels;
-    JOIN(vstore, LANES)(as_floatv(first), 0, values);
-    JOIN(vstore, LANES)(as_floatv(second), 1, values);
+    STORE(LANES)(as_floatv(first), 0, channels);
+    STORE(LANES)(as_floatv(second), 1, channels);
 }
 #endif
 
 // Writes all lanes, half of them in each of two places.
-INLINE void store_all_pixels(__global float4 *const first_half, __global float4 *const second_half,
-                             const float3v color) {
+INLINE void store_all_pixels(const Channels first_half, const Channels second_half, const float3v color) {
 #if LANES == 1
-    first_half[0] = (float4)(color.x, color.y, color.z, 1.0f);
+    STORE(4)((float4)(color.x, color.y, color.z, 1.0f), 0, first_half);
 #else
     store_half(first_half, color.x.lo, color.y.lo, color.z.lo);
     store_half(second_half, color.x.hi, color.y.hi, color.z.hi);
@@ -77,6 +106,11 @@ INLINE void store_pixel(const Canvas *const canvas, const uint index, const floa
     if (canvas->is_last) {
         const int place = (int)(canvas->first + index), width = (int)canvas->width;
         write_imagef(image, (int2)(place % width, place / width), pixel);
+        return;
+    }
+#elif defined(HALVES)
+    if (canvas->is_last) {
+        vstore_half4(pixel, canvas->first + index, image);
         return;
     }
 #endif
@@ -110,10 +144,10 @@ INLINE void store_clipped(const Canvas *const canvas, const uint corner, const C
 // Writes (or adds to) pixels[begin .. begin + count), count at most LANES.
 INLINE void store_pixels(const Canvas *const canvas, const uint begin, const uint count,
                          const float3v color IMAGE_PARAMETER) {
-#if !defined(NO_SHUFFLES) && !defined(IMAGE)
-    if (count == LANES && !canvas->accumulates) {
-        __global float4 *const pixels = canvas->pixels + begin;
-        store_all_pixels(pixels, pixels + LANES / 2, color);
+#ifdef STORES_WHOLE
+    if (count == LANES && stores_whole(canvas)) {
+        const Channels channels = channels_of(canvas, begin IMAGE_ARGUMENT);
+        store_all_pixels(channels, channels + 4 * LANES / 2, color);
         return;
     }
 #endif

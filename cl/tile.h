@@ -128,10 +128,11 @@ INLINE TileRays rays_of_tile(const Screen *const screen, const TilePass *const p
 // it.
 INLINE void store_block(const Canvas *const canvas, const uint corner, const uint ray, const uint columns,
                         const uint rows, const float3v color IMAGE_PARAMETER) {
-#if !defined(NO_SHUFFLES) && !defined(IMAGE)
-    if (columns >= BLOCK_WIDTH && rows >= BLOCK_HEIGHT && !canvas->accumulates) {
-        __global float4 *const first = canvas->pixels + corner + ray / BLOCK_WIDTH * canvas->width + ray % BLOCK_WIDTH;
-        store_all_pixels(first, first + (LANES == TILE_RAYS ? canvas->width : LANES / 2), color);
+#ifdef STORES_WHOLE
+    if (columns >= BLOCK_WIDTH && rows >= BLOCK_HEIGHT && stores_whole(canvas)) {
+        const uint first = corner + ray / BLOCK_WIDTH * canvas->width + ray % BLOCK_WIDTH;
+        const uint second = first + (LANES == TILE_RAYS ? canvas->width : LANES / 2);
+        store_all_pixels(channels_of(canvas, first IMAGE_ARGUMENT), channels_of(canvas, second IMAGE_ARGUMENT), color);
         return;
     }
 #endif

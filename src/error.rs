@@ -149,7 +149,7 @@ impl From<SceneError> for Error {
 fn log_lines(log: &str) -> String {
     let log = log.trim();
     if log.is_empty() {
-        return "; the driver gave no log".to_owned();
+        return "; the driver gave no log: update it, or choose another device".to_owned();
     }
     log.lines().map(|line| format!("\n    {line}")).collect()
 }

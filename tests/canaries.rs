@@ -3,14 +3,15 @@
 
 mod common;
 
-use common::{ALL_KINDS, LANE_WIDTHS, full_scene};
+use common::{full_scene, lane_widths};
 use energywave::opencl::{Argument, DeviceBuffer, Program};
 use energywave::pack::{self, Rule, Sources, layout};
 use energywave::ray::ViewPlane;
 use energywave::scene::Integration;
+use half::f16;
 
-/// Renders straight into a buffer with 64 marked pixels behind the image, all sources pixel by pixel; how many marks are
-/// left. `kernel` is `render` or `tiles`.
+/// Renders straight into a buffer with 64 marked pixels behind the image, or with `-D HALVES` into one of half floats; how
+/// many marks are left. `kernel` is `render` or `tiles`.
 fn marks_left(
     kernel: &str,
     lanes: u32,
@@ -22,7 +23,8 @@ fn marks_left(
     const MARK: [f32; 4] = [-1.0, -2.0, -3.0, -4.0];
     let scene = full_scene(width, height);
     let compute = common::compute();
-    let options = common::options(lanes, &format!("{ALL_KINDS} {method} {extra}"));
+    // What is stored does not depend on the kinds of source.
+    let options = common::options(lanes, &format!("-D SPHERES {method} {extra}"));
     let file = format!("{kernel}.cl");
     let program = Program::build(&compute, &[file.as_str()], &options).unwrap();
     let plane = ViewPlane::new(&scene.camera, scene.image);
@@ -30,10 +32,9 @@ fn marks_left(
     let nodes = pack::nodes(20, scene.decay);
     let launch = layout::Launch {
         count: width * height,
+        is_last: 1,
         node_count: nodes.len() as u32,
         sphere_end: packed.spheres.len() as u32,
-        torus_end: packed.tori.len() as u32,
-        curve_end: packed.curves.len() as u32,
         ..bytemuck::Zeroable::zeroed()
     };
     fn upload<T: bytemuck::Pod>(
@@ -46,6 +47,8 @@ fn marks_left(
     }
     let pixels = scene.image.pixels();
     let output = upload(&compute, &vec![MARK; pixels + MARKS]);
+    let halves = upload(&compute, &vec![MARK.map(to_half); pixels + MARKS]);
+    let has_halves = extra.contains("HALVES");
     let view = pack::view(&plane, &scene);
     // A single pass that lets nothing be interpolated.
     let pass = layout::TilePass {
@@ -76,6 +79,9 @@ fn marks_left(
     let mut arguments: Vec<&dyn Argument> = vec![&view, &launch];
     arguments.extend(lists);
     arguments.push(&output);
+    if has_halves {
+        arguments.push(&halves);
+    }
     // More work-items than there is work, as padded work-groups have.
     let items = match kernel {
         "tiles" => {
@@ -86,7 +92,16 @@ fn marks_left(
     };
     program.run(&compute, kernel, &arguments, items, 1).unwrap();
     let mut read = vec![[0.0_f32; 4]; pixels + MARKS];
-    output.read(&compute, &mut read).unwrap();
+    if has_halves {
+        let mut bits = vec![[0_u16; 4]; pixels + MARKS];
+        halves.read(&compute, &mut bits).unwrap();
+        read = bits
+            .iter()
+            .map(|p| p.map(|b| f16::from_bits(b).into()))
+            .collect();
+    } else {
+        output.read(&compute, &mut read).unwrap();
+    }
     assert!(
         read[..pixels].iter().all(|pixel| pixel[3] == 1.0),
         "a pixel is missing"
@@ -97,15 +112,21 @@ fn marks_left(
         .count()
 }
 
+fn to_half(value: f32) -> u16 {
+    f16::from_f32(value).to_bits()
+}
+
 #[test]
 fn nothing_is_written_behind_the_image() {
     let exact = Rule::of(&Integration::default(), false).definitions();
     let tiles = format!("{exact} -D PER_RAY= -D MOST_WORDS=4 -D TILE_WORKERS=1");
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         for (kernel, method) in [("render", ""), ("render", &exact), ("tiles", &tiles)] {
             for size in [(1, 1), (13, 7), (16, 4), (31, 1)] {
-                let left = marks_left(kernel, lanes, method, "", size);
-                assert_eq!(left, 64, "{kernel}, {lanes} lanes, {size:?}");
+                for film in ["", "-D HALVES"] {
+                    let left = marks_left(kernel, lanes, method, film, size);
+                    assert_eq!(left, 64, "{kernel}, {lanes} lanes, {size:?} {film}");
+                }
             }
         }
     }
@@ -114,5 +135,8 @@ fn nothing_is_written_behind_the_image() {
 #[test]
 fn a_store_of_all_lanes_is_noticed_behind_the_image() {
     let all_lanes = "-DLAST_LANES(left)=8u";
-    assert_eq!(marks_left("render", 8, "", all_lanes, (13, 7)), 64 - 5);
+    for film in ["", "-D HALVES"] {
+        let extra = format!("{all_lanes} {film}");
+        assert_eq!(marks_left("render", 8, "", &extra, (13, 7)), 64 - 5);
+    }
 }

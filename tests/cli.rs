@@ -268,6 +268,12 @@ fn an_image_too_large_for_the_memory_exits_with_5() {
 
 #[test]
 fn ctrl_c_exits_with_130_and_leaves_nothing() {
+    interrupt_on("reference");
+    interrupt_on(device());
+}
+
+/// Presses Ctrl-C in the middle of minutes of work.
+fn interrupt_on(device: &str) {
     let folder = Folder::new();
     let child = folder
         .command()
@@ -277,9 +283,11 @@ fn ctrl_c_exits_with_130_and_leaves_nothing() {
             "-o",
             "out.png",
             "--device",
-            "reference",
+            device,
             "--size",
             "8000x8000",
+            "--divisions",
+            "4096",
         ])
         .stderr(Stdio::piped())
         .spawn()

@@ -6,7 +6,7 @@ mod common;
 
 use common::occluders::{OCCLUDERS, Occluder};
 use common::random::{KINDS, random_scene, scene_of};
-use common::{LANE_WIDTHS, depths, difference, meets, renderer};
+use common::{depths, difference, lane_widths, meets, renderer};
 use energywave::image::{DepthAlong, compare};
 use energywave::ray::{Ray, ViewPlane};
 use energywave::scene::{Decay, ImageSize, Measure, Method, Profile, Sampling};
@@ -282,7 +282,7 @@ fn every_lane_width_sees_the_same_surfaces() {
     let (_, ball) = OCCLUDERS[0];
     let scene = occluded(&lit_scene(), ball);
     let expected = reference::render(&scene).unwrap();
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         for method in [Method::Simpson, Method::Exact] {
             let mut scene = scene.clone();
             scene.integration.method = method;

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::LANE_WIDTHS;
+use common::lane_widths;
 use energywave::Scene;
 use energywave::opencl::{Argument, Compute, DeviceBuffer, Program};
 use energywave::pack::Sources;
@@ -88,7 +88,7 @@ fn cube_root_error(bench: &Bench) -> f64 {
 
 #[test]
 fn the_inverse_cube_root_is_within_a_few_roundings() {
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let error = cube_root_error(&Bench::new(lanes, ""));
         assert!(error < CUBE_ROOT_ERROR, "{lanes} lanes: {error:e}");
     }
@@ -103,7 +103,7 @@ fn the_inverse_cube_root_is_within_a_few_roundings() {
 fn powers_of_two_and_logarithms_are_within_a_few_roundings() {
     let powers: Vec<f32> = (0..1600).map(|i| i as f32 * 0.15 - 119.9).collect();
     let values: Vec<f32> = powers.iter().map(|x| x.exp2()).collect();
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let bench = Bench::new(lanes, "");
         let found = &bench.run("powers", &[&powers], powers.len(), 1)[0];
         for (x, value) in powers.iter().zip(found) {
@@ -125,7 +125,7 @@ fn powers_of_two_and_logarithms_are_within_a_few_roundings() {
 #[test]
 fn the_arctangent_is_within_a_few_roundings() {
     let values: Vec<f32> = (0..1600).map(|i| i as f32 / 1599.0).collect();
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let bench = Bench::new(lanes, "");
         let found = &bench.run("arctangents", &[&values], values.len(), 1)[0];
         for (x, value) in values.iter().zip(found) {
@@ -140,7 +140,7 @@ fn the_cosine_of_a_third_of_the_angle_is_within_its_polynomials_error() {
     let values: Vec<f32> = (0..1600)
         .map(|i| (i as f32 / 799.5 - 1.0).clamp(-1.0, 1.0))
         .collect();
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let found = &Bench::new(lanes, "").run("third", &[&values], values.len(), 1)[0];
         for (x, cosine) in values.iter().zip(found) {
             let expected = (f64::from(*x).acos() / 3.0).cos();
@@ -193,7 +193,7 @@ fn the_cubics_outer_roots_match_bisection() {
     hs.extend([
         0.0, 1.0, -1.0, 8.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1e-5, -1e-5, 1e-5, -1e-5, 1.0, -1.0,
     ]);
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let found = Bench::new(lanes, "").run("cubic", &[&ps, &hs], ps.len(), 2);
         for (i, (p, h)) in ps.iter().zip(&hs).enumerate() {
             let (p, h) = (f64::from(*p), f64::from(*h));
@@ -232,7 +232,7 @@ fn the_cubics_outer_roots_match_bisection() {
 #[test]
 fn the_spline_matches_de_boor() {
     let ts: Vec<f32> = (0..160).map(|i| i as f32 / 159.0).collect();
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let bench = Bench::new(lanes, "");
         for series in [
             vec![1.0, 0.6, 0.2, 0.4, 0.8, 0.6, 1.0],
@@ -353,7 +353,7 @@ fn distance_cases() -> Vec<(&'static str, Scene)> {
 
 #[test]
 fn the_distance_to_every_core_matches_float64() {
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let bench = Bench::new(lanes, "");
         for (seed, (kernel, scene)) in distance_cases().iter().enumerate() {
             let error = distance_error(&bench, kernel, scene, seed as u64);

@@ -4,7 +4,7 @@
 mod common;
 
 use common::random::{Kind, random_scene, scene_of};
-use common::{LANE_WIDTHS, difference, meets, renderer};
+use common::{difference, lane_widths, meets, renderer};
 use energywave::image::Difference;
 use energywave::scene::Method;
 use energywave::verify::{Row, built_in_rays, verify};
@@ -163,7 +163,7 @@ fn the_known_rays_are_met_on_every_lane_width_and_in_every_form() {
         "-DNO_SHUFFLES -DINLINE=",
         "-DNO_DOUBLES",
     ];
-    let builds = LANE_WIDTHS.map(|lanes| (lanes, "")).into_iter();
+    let builds = lane_widths().into_iter().map(|lanes| (lanes, ""));
     let formed = forms.into_iter().flat_map(|form| [(1, form), (8, form)]);
     for (lanes, form) in builds.chain(formed) {
         let rows = through(&mut renderer(lanes, form));
@@ -205,7 +205,7 @@ fn every_lane_width_meets_the_tolerance() {
     scene.integration.method = Method::Exact;
     scene.integration.tolerance = 1e-4;
     let expected = reference::render(&scene).unwrap();
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let found = difference(&renderer(lanes, "").render(&scene).unwrap(), &expected);
         assert!(meets(&found, 1e-4), "{lanes} lanes: {found:?}");
     }

@@ -4,7 +4,7 @@
 mod common;
 
 use common::random::{KINDS, Kind, add_source, random_view};
-use common::{LANE_WIDTHS, WORST_PIXEL, difference, renderer};
+use common::{WORST_PIXEL, difference, lane_widths, renderer};
 use energywave::scene::{Camera, Curve, Decay, ImageSize, Method};
 use energywave::{Scene, reference};
 use glam::DVec3;
@@ -58,7 +58,7 @@ fn a_ray_through_a_core_has_the_finite_value_of_the_floored_field() {
     for kind in KINDS {
         let scene = through_a_core(kind);
         let expected = reference::render(&scene).unwrap();
-        for lanes in LANE_WIDTHS {
+        for lanes in lane_widths() {
             let image = renderer(lanes, "").render(&scene).unwrap();
             let middle = 4 * (2 * 5 + 2);
             let (value, expected) = (image.as_slice()[middle], expected.as_slice()[middle]);

@@ -7,12 +7,11 @@ mod common;
 use common::host::Host;
 use energywave::opencl::HostTarget;
 use energywave::scene::{Method, Sampling};
-use energywave::{Error, RadianceImage, Renderer, Scene};
+use energywave::{RadianceImage, Renderer, Scene};
 use opencl3::command_queue::{CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE, CL_QUEUE_PROFILING_ENABLE};
 use opencl3::event::{Event, create_user_event, set_user_event_status};
 use opencl3::memory::{
-    Buffer, CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE,
-    CL_MEM_WRITE_ONLY, CL_RGBA, CL_UNSIGNED_INT8, ClMem,
+    Buffer, CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA, ClMem,
 };
 use opencl3::types::cl_event;
 
@@ -90,27 +89,31 @@ const HALF_ROUNDING: f32 = 1.0 / 2048.0;
 const OTHER_KERNEL: f32 = 2e-4;
 
 #[test]
-fn kernels_write_images_that_the_host_cannot_map_and_halves() {
+fn images_of_halves_and_those_that_cannot_be_mapped_get_the_same_image() {
     let host = Host::new(0);
     let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
     for (name, scene) in scenes() {
         let size = scene.image;
         let expected = renderer.render(&scene).unwrap();
-        let flags = CL_MEM_READ_WRITE | CL_MEM_HOST_NO_ACCESS;
-        // A host reads such an image by copying it.
-        let image = host.image_of(flags, size, CL_RGBA, CL_FLOAT);
-        let event = enqueue(&mut renderer, &scene, (&image).into(), &[]).unwrap();
-        let copy = host.copy(&image, size, &event);
-        let found = host.read((&copy).into(), size, &[]);
-        let worst = difference(&found, &expected);
-        assert!(worst <= OTHER_KERNEL, "{name}: {worst}");
-
-        let image = host.image(size, CL_HALF_FLOAT);
-        let event = enqueue(&mut renderer, &scene, (&image).into(), &[]).unwrap();
-        let found = host.read((&image).into(), size, &[&event]);
-        let worst = difference(&found, &expected);
-        assert!(worst <= HALF_ROUNDING + OTHER_KERNEL, "{name}: {worst}");
-        assert!(worst > 1e-5, "these are no halves");
+        for (flags, channel_type, limit) in [
+            (0, CL_HALF_FLOAT, HALF_ROUNDING + OTHER_KERNEL),
+            (
+                CL_MEM_HOST_NO_ACCESS,
+                CL_HALF_FLOAT,
+                HALF_ROUNDING + OTHER_KERNEL,
+            ),
+            (CL_MEM_HOST_NO_ACCESS, CL_FLOAT, OTHER_KERNEL),
+        ] {
+            let image = host.image_of(CL_MEM_READ_WRITE | flags, size, CL_RGBA, channel_type);
+            let event = enqueue(&mut renderer, &scene, (&image).into(), &[]).unwrap();
+            let copy = host.copy(&image, size, &event);
+            let worst = difference(&host.read((&copy).into(), size, &[]), &expected);
+            assert!(worst <= limit, "{name}, {flags}: {worst}");
+            assert!(
+                channel_type == CL_FLOAT || worst > 1e-5,
+                "these are no halves"
+            );
+        }
     }
 }
 
@@ -165,111 +168,6 @@ fn frames_wait_for_the_hosts_events_and_the_call_does_not() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused_before_anything_is_enqueued() {
-    let host = Host::new(0);
-    let other = Host::new(0);
-    let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
-    let scene = common::full_scene(40, 30);
-    let (size, mut wider, mut fewer) = (scene.image, scene.image, scene.image);
-    wider.width += 1;
-    fewer.height -= 1;
-    let null = std::ptr::null_mut();
-    let rgba = |flags, channel_type| host.image_of(flags, size, CL_RGBA, channel_type);
-    let buffer = |flags| host.buffer(flags, size);
-    let (small, foreign) = (
-        host.buffer(CL_MEM_READ_WRITE, fewer),
-        other.buffer(CL_MEM_READ_WRITE, size),
-    );
-    let (read_only, write_only) = (buffer(CL_MEM_READ_ONLY), buffer(CL_MEM_WRITE_ONLY));
-    let (wide, bytes) = (
-        host.image(wider, CL_FLOAT),
-        rgba(CL_MEM_READ_WRITE, CL_UNSIGNED_INT8),
-    );
-    let (read_only_image, foreign_image) = (
-        rgba(CL_MEM_READ_ONLY, CL_FLOAT),
-        other.image(size, CL_FLOAT),
-    );
-    let good = buffer(CL_MEM_READ_WRITE);
-    let refused: [(HostTarget, &str); 12] = [
-        (HostTarget::Buffer(null), "the host's buffer: null"),
-        (HostTarget::Image(null), "the host's image: null"),
-        (
-            (&small).into(),
-            "buffer: 18560 bytes; 40x30 float32 RGBA pixels need 19200",
-        ),
-        ((&foreign).into(), "buffer: it belongs to another context"),
-        (
-            (&read_only).into(),
-            "buffer: kernels may not write it (CL_MEM_READ_ONLY)",
-        ),
-        (
-            (&write_only).into(),
-            "buffer: kernels may not read it (CL_MEM_WRITE_ONLY)",
-        ),
-        (
-            HostTarget::Buffer(wide.get()),
-            "buffer: it is another kind of memory object",
-        ),
-        (
-            HostTarget::Image(good.get()),
-            "image: it is another kind of memory object",
-        ),
-        ((&wide).into(), "image: 41x30 pixels, the scene has 40x30"),
-        (
-            (&bytes).into(),
-            "image: channels of order 0x10b5 and type 0x10da; they must be CL_RGBA",
-        ),
-        (
-            (&read_only_image).into(),
-            "image: kernels may not write it (CL_MEM_READ_ONLY)",
-        ),
-        (
-            (&foreign_image).into(),
-            "image: it belongs to another context",
-        ),
-    ];
-    for (target, words) in refused {
-        let error = enqueue(&mut renderer, &scene, target, &[]).unwrap_err();
-        assert!(matches!(error, Error::Host { .. }), "{error:?}");
-        assert!(
-            error.to_string().contains(words),
-            "{error}\nhas not: {words}"
-        );
-    }
-    let mut refuse = |scene: &Scene, events: &[cl_event], words: &str| {
-        let error = enqueue(&mut renderer, scene, (&good).into(), events).unwrap_err();
-        assert!(
-            error.to_string().contains(words),
-            "{error}\nhas not: {words}"
-        );
-    };
-    let event = Event::new(create_user_event(other.context.get()).unwrap());
-    refuse(
-        &scene,
-        &[event.get()],
-        "wait list: an event of it belongs to another context",
-    );
-    refuse(&scene, &[null], "wait list: it has a null event");
-    let mut invalid = scene.clone();
-    invalid.tori[0].major_radius = -1.0;
-    refuse(&invalid, &[], "torus[0].major_radius");
-
-    let found = enqueue(&mut renderer, &scene, (&good).into(), &[]).unwrap();
-    let found = host.read((&good).into(), size, &[&found]);
-    assert_eq!(difference(&found, &renderer.render(&scene).unwrap()), 0.0);
-
-    let error = Renderer::on_host(&host.context, &other.queue).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .contains("the host's queue: it belongs to another context")
-    );
-    let mut own = Renderer::new(&common::device()).unwrap();
-    let error = enqueue(&mut own, &scene, (&good).into(), &[]).unwrap_err();
-    assert!(error.to_string().contains("made without one"), "{error}");
-}
-
-#[test]
 fn a_host_gets_every_reference_back() {
     let host = Host::new(0);
     let scene = common::full_scene(16, 16);
@@ -278,7 +176,7 @@ fn a_host_gets_every_reference_back() {
         host.image(scene.image, CL_FLOAT),
     );
     let counts = || {
-        [
+        vec![
             host.context.reference_count().unwrap(),
             host.queue.reference_count().unwrap(),
             buffer.reference_count().unwrap(),
@@ -294,14 +192,21 @@ fn a_host_gets_every_reference_back() {
         counts()
     };
     draw(); // PoCL 3.1 keeps a reference to the context after the first frame of each kind, once
-    let before = counts();
-    assert!(draw()[0] > before[0], "the context is retained");
-    host.queue.finish().unwrap();
     // A driver lets go of what is over in a thread of its own.
-    for _ in 0..100 {
-        if counts() != before {
+    let settled = || {
+        host.queue.finish().unwrap();
+        let mut last = counts();
+        for _ in 0..50 {
             std::thread::sleep(std::time::Duration::from_millis(10));
+            last = counts()
+                .into_iter()
+                .zip(last)
+                .map(|(a, b)| a.min(b))
+                .collect();
         }
-    }
-    assert_eq!(counts(), before);
+        last
+    };
+    let before = settled();
+    assert!(draw()[0] > before[0], "the context is retained");
+    assert_eq!(settled(), before);
 }

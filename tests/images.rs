@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{LANE_WIDTHS, difference, empty_scene, full_scene, renderer};
+use common::{difference, empty_scene, full_scene, lane_widths, renderer};
 use energywave::scene::{Measure, Method};
 use energywave::{Scene, reference};
 use glam::DVec3;
@@ -146,7 +146,7 @@ fn the_intensity_at_the_nearest_point_does_not_hang_on_rounding() {
 fn every_lane_width_gives_the_same_image() {
     let scene = full_scene(53, 19);
     let scalar = renderer(1, "").render(&scene).unwrap();
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let found = difference(&renderer(lanes, "").render(&scene).unwrap(), &scalar);
         assert!(found.max < ROUNDING, "{lanes} lanes: {found:?}");
     }
@@ -156,7 +156,7 @@ fn every_lane_width_gives_the_same_image() {
 fn the_portable_forms_give_the_same_image() {
     let scene = full_scene(53, 19);
     let expected = reference::render_simpson(&scene).unwrap();
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let native = renderer(lanes, "").render(&scene).unwrap();
         for form in ["-DPORTABLE_ROOTS", "-DNO_SHUFFLES -DINLINE="] {
             let image = renderer(lanes, form).render(&scene).unwrap();
@@ -194,7 +194,7 @@ fn a_scene_without_sources_is_black_and_opaque() {
 
 #[test]
 fn any_size_works_from_one_pixel_on() {
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let mut renderer = renderer(lanes, "");
         for (width, height) in [(1, 1), (2, 1), (1, 17), (17, 1), (127, 3), (16, 16)] {
             let scene = full_scene(width, height);

@@ -65,7 +65,7 @@ fn the_reference_notices_a_ray_moved_by_a_millionth() {
 
 #[test]
 fn the_device_meets_the_known_simpson_sums_on_every_lane_width() {
-    for lanes in common::LANE_WIDTHS {
+    for lanes in common::lane_widths() {
         for roots in ["", "-DPORTABLE_ROOTS"] {
             for row in through(&mut common::renderer(lanes, roots), Method::Simpson) {
                 assert!(row.passes(), "{lanes} lanes, {roots}: {row:?}");
@@ -90,7 +90,7 @@ fn many_rays_of_one_launch_are_as_good_as_one_by_one() {
     let mut scene = rays[32].scene().unwrap();
     scene.integration.method = Method::Simpson;
     let all: Vec<Ray> = rays.iter().map(KnownRay::ray).collect();
-    for lanes in common::LANE_WIDTHS {
+    for lanes in common::lane_widths() {
         let mut renderer = common::renderer(lanes, "");
         let together = renderer.trace(&scene, &all).unwrap();
         let mut reference = Renderer::new(&Device::select("reference").unwrap()).unwrap();

@@ -1,13 +1,16 @@
 //! Every kernel on every lane width, small enough for a simulator: `.ci/run` runs this under oclgrind, which watches every
-//! access. On any other device it is one more test.
+//! access. On any other device it is one more test, of its own lane width.
 #![allow(clippy::unwrap_used)]
+#![allow(unsafe_code)] // hosts call OpenCL
 
 mod common;
 
+use common::host::Host;
 use energywave::image::DepthAlong;
 use energywave::scene::Method;
 use energywave::verify::{KnownRay, built_in_rays};
 use energywave::{BuildOptions, Renderer};
+use opencl3::memory::{CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA};
 
 #[test]
 fn every_kernel_runs_on_every_lane_width() {
@@ -25,10 +28,13 @@ fn every_kernel_runs_on_every_lane_width() {
         tile_workers: Some(16),
         ..common::options(1, "")
     };
-    let is_simulator = common::device().name.contains("Oclgrind");
-    let mut builds: Vec<BuildOptions> = common::LANE_WIDTHS
+    let device = common::device();
+    let is_simulator = device.name.contains("Oclgrind");
+    let mut builds: Vec<BuildOptions> = common::lane_widths()
+        .into_iter()
+        .filter(|lanes| is_simulator || *lanes == device.lanes)
         .map(|lanes| common::options(lanes, ""))
-        .to_vec();
+        .collect();
     // PoCL 3.1 compiles it for hours.
     builds.extend(is_simulator.then_some(shared_tiles));
     for options in builds {
@@ -50,6 +56,35 @@ fn every_kernel_runs_on_every_lane_width() {
             assert!(traced.iter().flatten().all(|value| value.is_finite()));
             let hidden = renderer.render(&hidden).unwrap();
             assert!(hidden.as_slice().iter().all(|value| value.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn frames_for_a_host_touch_nothing_but_their_own() {
+    let host = Host::new(0);
+    for lanes in [1, 16] {
+        let options = common::options(lanes, "");
+        let (context, queue) = (host.context.get(), host.queue.get());
+        // SAFETY: both are alive.
+        let mut renderer = unsafe { Renderer::on_raw_host(context, queue, &options) }.unwrap();
+        for method in [Method::Simpson, Method::Exact] {
+            let mut scene = common::empty_scene(21, 10);
+            scene.integration.method = method;
+            scene.spheres.push(common::sphere([0.3, 0.2, 0.1], 1.0));
+            for (flags, channels) in [
+                (0, CL_HALF_FLOAT),
+                (0, CL_FLOAT),
+                (CL_MEM_HOST_NO_ACCESS, CL_FLOAT),
+            ] {
+                let flags = flags | CL_MEM_READ_WRITE;
+                let image = host.image_of(flags, scene.image, CL_RGBA, channels);
+                // SAFETY: the image lives until the frame is over.
+                unsafe { renderer.enqueue(&scene, (&image).into(), &[]) }
+                    .unwrap()
+                    .wait()
+                    .unwrap();
+            }
         }
     }
 }

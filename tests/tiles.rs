@@ -6,7 +6,7 @@ mod common;
 
 use common::random::random_scene;
 use common::tile_scenes::{hard_scenes, usual_view};
-use common::{LANE_WIDTHS, difference, meets, renderer};
+use common::{difference, lane_widths, meets, renderer};
 use energywave::scene::{ImageSize, Method, Sampling};
 use energywave::{Renderer, Scene, reference};
 use glam::DVec3;
@@ -102,7 +102,7 @@ fn every_lane_width_paints_the_same_image() {
     scene.integration.tolerance = 1e-4;
     scene.camera.target = DVec3::new(0.05, 0.02, 0.03);
     let expected = reference::render(&scene).unwrap();
-    for lanes in LANE_WIDTHS {
+    for lanes in lane_widths() {
         let found = difference(&renderer(lanes, "").render(&scene).unwrap(), &expected);
         assert!(meets(&found, 1e-4), "{lanes} lanes: {found:?}");
     }

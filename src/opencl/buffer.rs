@@ -14,7 +14,7 @@ use opencl3::types::{CL_FALSE, CL_TRUE, cl_mem};
 
 use super::Compute;
 use super::copies::Copies;
-use super::failure::failed;
+use super::failure::{failed, refused};
 use super::handle::Handle;
 use crate::error::{Error, Result};
 
@@ -29,7 +29,7 @@ impl<T: Pod> DeviceBuffer<T> {
     /// Allocates `len` elements (at least one), which kernels may read and write; `what` names the contents in errors.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] beyond the device's limits, [`Error::Device`] if the driver refuses.
+    /// [`Error::OutOfMemory`] beyond the device's limits, and if the driver refuses.
     pub fn new(compute: &Compute, what: &str, len: usize) -> Result<Self> {
         Self::with_flags(compute, what, len, CL_MEM_READ_WRITE)
     }
@@ -109,7 +109,7 @@ impl<T: Pod> DeviceBuffer<T> {
         // SAFETY: no host pointer is handed over; the context is alive.
         let buffer =
             unsafe { Buffer::create(&compute.context, flags, len, ptr::null_mut::<c_void>()) }
-                .map_err(failed(&device.name, "clCreateBuffer"))?;
+                .map_err(refused(&device.name, what, bytes))?;
         Ok(Self {
             buffer: Handle::new(buffer),
             len,

@@ -1,7 +1,10 @@
 //! A device with its context and its queue.
 
+use std::ptr;
+
 use opencl3::command_queue::{CL_QUEUE_PROFILING_ENABLE, CommandQueue};
-use opencl3::context::{Context, context::retain_context};
+use opencl3::context::Context;
+use opencl3::context::context::{create_context, retain_context};
 use opencl3::error_codes::ClError;
 
 use super::OpenClDevice;
@@ -25,9 +28,10 @@ impl Compute {
     /// [`crate::Error::Device`] if the driver refuses.
     pub fn new(device: &OpenClDevice) -> Result<Self> {
         let name = &device.name;
-        let context =
-            Context::from_device(&device.handle).map_err(failed(name, "clCreateContext"))?;
-        Self::in_context(Handle::new(context), device)
+        let context = create_context(&[device.handle.id()], ptr::null(), None, ptr::null_mut())
+            .map_err(ClError)
+            .map_err(failed(name, "clCreateContext"))?;
+        Self::in_context(Handle::new(Context::new(context, &[])), device)
     }
 
     /// A queue of our own in a context that has the device.

@@ -28,13 +28,18 @@ impl<T> Copies<T> {
     /// [`crate::Error::Device`] if a copy failed.
     pub(super) fn reap(&mut self, compute: &Compute) -> Result<()> {
         let mut outcome = Ok(());
-        self.0.retain(|(event, _)| match state(event) {
-            Ok(is_over) => !is_over,
-            Err(code) => {
-                outcome = Err(code);
-                false
-            }
-        });
+        self.0
+            .retain(|(event, _)| match event.command_execution_status() {
+                Ok(status) if status.0 < CL_COMPLETE => {
+                    outcome = Err(ClError(status.0));
+                    false
+                }
+                Ok(status) => status.0 != CL_COMPLETE,
+                Err(code) => {
+                    outcome = Err(code);
+                    true // the question failed: the copy may go on
+                }
+            });
         outcome.map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))
     }
 

@@ -32,25 +32,28 @@ pub(super) struct Counts {
     /// Where the copy under way goes to.
     values: Box<[u32; LEN]>,
     under_way: Option<Handle<Event>>,
+    /// The last reset: kernels that count on from old numbers draw a wrong image.
+    resetting: Option<Handle<Event>>,
 }
 
 impl Counts {
     /// Sets all numbers to 0 before the next command of the queue begins.
     pub(super) fn reset(&mut self, compute: &Compute) -> Result<()> {
-        self.settle(compute)?;
+        self.wait_for_numbers(compute)?;
         let buffer = match self.buffer.take() {
             Some(buffer) => buffer,
             None => DeviceBuffer::new(compute, "the counts", LEN)?,
         };
         const ZEROS: &[u32; LEN] = &[0; LEN];
         // SAFETY: constants stay.
-        unsafe { self.buffer.insert(buffer).begin_write(compute, ZEROS) }?;
+        let event = unsafe { self.buffer.insert(buffer).begin_write(compute, ZEROS) }?;
+        self.resetting = Some(event);
         Ok(())
     }
 
     /// Reads the numbers after all earlier commands of the queue.
     pub(super) fn fetch(&mut self, compute: &Compute) -> Result<()> {
-        self.settle(compute)?;
+        self.wait_for_numbers(compute)?;
         if let Some(buffer) = &self.buffer {
             // SAFETY: `values` has room for the buffer's numbers; it is neither read nor freed before the event is over.
             let event = unsafe { buffer.begin_read(compute, self.values.as_mut_slice()) }?;
@@ -61,18 +64,26 @@ impl Counts {
 
     /// Waits for what is under way: the numbers last fetched.
     pub(super) fn settle(&mut self, compute: &Compute) -> Result<&[u32; LEN]> {
-        if let Some(event) = self.under_way.take() {
-            event
-                .wait()
-                .map_err(failed(&compute.device.name, "clEnqueueReadBuffer"))?;
-        }
+        self.wait_for_numbers(compute)?;
+        wait(compute, self.resetting.take(), "clEnqueueWriteBuffer")?;
         Ok(&self.values)
+    }
+
+    fn wait_for_numbers(&mut self, compute: &Compute) -> Result<()> {
+        wait(compute, self.under_way.take(), "clEnqueueReadBuffer")
     }
 
     pub(super) fn handle(&self) -> cl_mem {
         self.buffer
             .as_ref()
             .map_or(ptr::null_mut(), DeviceBuffer::handle)
+    }
+}
+
+fn wait(compute: &Compute, event: Option<Handle<Event>>, call: &'static str) -> Result<()> {
+    match event {
+        Some(event) => event.wait().map_err(failed(&compute.device.name, call)),
+        None => Ok(()),
     }
 }
 

@@ -17,6 +17,22 @@ pub(super) fn failed<'a>(
     }
 }
 
+/// Turns the error code of a refused buffer of so many bytes into an error that says what it was for.
+pub(super) fn refused<'a>(
+    device: &'a str,
+    what: &'a str,
+    bytes: u64,
+) -> impl FnOnce(ClError) -> Error + 'a {
+    move |ClError(code)| {
+        Error::OutOfMemory(format!(
+            "{device}: {what}, {} KiB: clCreateBuffer failed ({}); {}",
+            bytes.div_ceil(1 << 10),
+            code_name(code),
+            advice(code)
+        ))
+    }
+}
+
 /// OpenCL's name of an error code, with the number.
 pub(super) fn code_name(code: i32) -> String {
     format!("{}, {code}", error_text(code))

@@ -8,9 +8,11 @@ use opencl3::context::{Context, context::release_context};
 use opencl3::event::{Event, release_event};
 use opencl3::kernel::{Kernel, release_kernel};
 use opencl3::memory::{Buffer, ClMem, Image, release_mem_object};
-use opencl3::program::{Program, release_program};
+use opencl3::program::release_program;
+use opencl3::types::cl_program;
 
-/// An object of opencl3, released as it does but for the panic.
+/// An object of opencl3, released as it does but for the panic. What the object owns besides is never freed: nothing, if
+/// a context is made without a list of devices.
 #[derive(Debug)]
 pub struct Handle<T: Release>(ManuallyDrop<T>);
 
@@ -50,6 +52,23 @@ impl<T: Release> Drop for Handle<T> {
     }
 }
 
+/// A program. That of opencl3 owns a list of its kernels.
+#[derive(Debug)]
+pub struct RawProgram(cl_program);
+
+// SAFETY: OpenCL's functions on programs may be called from any thread.
+unsafe impl Send for RawProgram {}
+
+impl RawProgram {
+    pub(super) fn new(program: cl_program) -> Self {
+        Self(program)
+    }
+
+    pub(super) fn get(&self) -> cl_program {
+        self.0
+    }
+}
+
 macro_rules! released_by {
     ($([$($generic:ident)?] $type:ty: $release:path),* $(,)?) => {$(
         impl$(<$generic>)? Release for $type {
@@ -64,7 +83,7 @@ macro_rules! released_by {
 released_by!(
     [] Context: release_context,
     [] CommandQueue: release_command_queue,
-    [] Program: release_program,
+    [] RawProgram: release_program,
     [] Kernel: release_kernel,
     [] Event: release_event,
     [] Image: release_mem_object,

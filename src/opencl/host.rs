@@ -186,21 +186,23 @@ impl OpenClRenderer {
         };
         let output = match (target, &in_place) {
             (HostTarget::Buffer(buffer), _) => Output::Buffer(buffer),
-            (HostTarget::Image(_), Some(image)) => Output::Buffer(image.buffer()),
+            (HostTarget::Image(_), Some(image)) => image.output(),
             (HostTarget::Image(image), None) => Output::Image(image),
         };
         let launched = self.launch_frame(scene, output);
-        if let Some(image) = in_place {
-            image.unmap(&self.compute, &memory)?;
+        let unmapped = match in_place {
+            Some(image) => image.unmap(&self.compute, &memory),
+            None => Ok(()),
+        };
+        // Also what was launched before a failure draws into the target: what follows on the host's queue waits for it.
+        let ended = self.end();
+        match launched.and(unmapped) {
+            Ok(()) => ended,
+            Err(error) => {
+                drop(ended.map(Handle::new)); // in silence
+                Err(error)
+            }
         }
-        launched?;
-        self.end()
-    }
-
-    fn launch_frame(&mut self, scene: &Scene, output: Output) -> Result<()> {
-        let job = self.job(scene, output)?;
-        self.begin(&job, scene.image.pixels())?;
-        self.launch_all(&job, scene.image.pixels() as u32, output)
     }
 
     /// The host's queue; an error for a renderer of its own.

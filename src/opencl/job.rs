@@ -1,11 +1,14 @@
 //! One frame or one list of rays, packed, with what its launches may take.
 
-use super::kernels::{Rays, Task, Variant};
+use super::kernels::{Film, Rays, Task, Variant};
 use super::launch::Output;
 use super::pace::{Part, Work, source_count, source_counts};
 use super::tiles;
 use crate::pack::{Rule, Sources, layout};
 use crate::scene::{Sampling, Scene};
+
+/// Launches begin at multiples of this many rays: the same ones are always integrated side by side.
+pub(super) const MOST_LANES: u32 = 16;
 
 #[derive(Debug)]
 pub(super) struct Job {
@@ -32,9 +35,6 @@ impl Wanted<'_> {
         }
     }
 }
-
-/// The rays side by side in a vector share their quadrature: launches begin where a vector does.
-const MOST_LANES: u32 = 16;
 
 /// An image that is cut at multiples of so many rows is the same to the bit as in one piece.
 pub(crate) fn grain_rows(scene: &Scene) -> u32 {
@@ -69,7 +69,11 @@ impl Job {
             kinds: source_counts(&sources).map(|count| count > 0),
             has_squares: sources.have_squares(),
             has_depth: scene.depth.is_some() && !is_listed,
-            to_image: matches!(wanted, Wanted::Pixels(Output::Image(_))),
+            film: match wanted {
+                Wanted::Pixels(Output::Image(_)) => Film::Image,
+                Wanted::Pixels(Output::Halves(_)) => Film::Halves,
+                Wanted::Pixels(_) | Wanted::Rays(_) => Film::Floats,
+            },
             rays: match has_tiles(scene) {
                 _ if is_listed => Rays::Listed,
                 true => Rays::Tiles,

@@ -22,9 +22,19 @@ pub(super) struct Task {
     pub has_squares: bool,
     /// Whether depths end the rays.
     pub has_depth: bool,
-    /// Whether pixels go to an image instead of a buffer.
-    pub to_image: bool,
+    pub film: Film,
     pub rays: Rays,
+}
+
+/// What finished pixels are stored in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Film {
+    /// A buffer of float32.
+    Floats,
+    /// A buffer of half floats.
+    Halves,
+    /// An image.
+    Image,
 }
 
 /// Which rays a kernel takes.
@@ -97,8 +107,9 @@ impl Kernels {
         let options_of = KIND_OPTIONS.into_iter().zip(task.kinds);
         let squares = (" -D INVERSE_SQUARES", task.has_squares);
         let depth = (" -D DEPTH", task.has_depth);
-        let image = (" -D IMAGE", task.to_image);
-        for (option, is_there) in options_of.chain([squares, depth, image]) {
+        let image = (" -D IMAGE", task.film == Film::Image);
+        let halves = (" -D HALVES", task.film == Film::Halves);
+        for (option, is_there) in options_of.chain([squares, depth, image, halves]) {
             if is_there {
                 definitions += option;
             }

@@ -18,6 +18,7 @@ use crate::device::DeviceType;
 use crate::error::{Error, Result};
 use crate::pack::layout;
 use crate::renderer::FrameCost;
+use crate::scene::Scene;
 
 /// Where a frame's pixels go.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,8 @@ pub(super) enum Output {
     Own,
     /// A buffer of someone else, for all pixels.
     Buffer(cl_mem),
+    /// Likewise, of half floats.
+    Halves(cl_mem),
     /// An image of someone else, for all pixels.
     Image(cl_mem),
 }
@@ -85,9 +88,16 @@ impl OpenClRenderer {
         Ok(last)
     }
 
+    /// Packs a frame of someone else's memory and launches it, without waiting for anything.
+    pub(super) fn launch_frame(&mut self, scene: &Scene, output: Output) -> Result<()> {
+        let job = self.job(scene, output)?;
+        self.begin(&job, scene.image.pixels())?;
+        self.launch_all(&job, scene.image.pixels() as u32, output)
+    }
+
     /// Launches all sources on all of a frame's pixels without waiting for anything. What is found finished later tells
     /// the pace.
-    pub(super) fn launch_all(&mut self, job: &Job, pixels: u32, output: Output) -> Result<()> {
+    fn launch_all(&mut self, job: &Job, pixels: u32, output: Output) -> Result<()> {
         self.learn()?;
         self.pace.begin_unwatched(&job.work, pixels);
         let mut pixel = 0;
@@ -145,8 +155,8 @@ impl OpenClRenderer {
         let pixels = match output {
             Output::Own => self.output()?.handle(),
             Output::Buffer(buffer) => buffer,
-            Output::Image(_) if is_whole => std::ptr::null_mut(),
-            Output::Image(_) => {
+            Output::Image(_) | Output::Halves(_) if is_whole => std::ptr::null_mut(),
+            Output::Image(_) | Output::Halves(_) => {
                 self.reserve_output(job.view.width as usize * job.view.height as usize)?;
                 self.output()?.handle()
             }
@@ -237,9 +247,10 @@ impl OpenClRenderer {
 }
 
 impl Output {
+    /// What finished pixels go to, where that is not the buffer in which they are gathered.
     fn image(self) -> Option<RawMemory> {
         match self {
-            Self::Image(image) => Some(RawMemory(image)),
+            Self::Image(image) | Self::Halves(image) => Some(RawMemory(image)),
             Self::Own | Self::Buffer(_) => None,
         }
     }

@@ -23,9 +23,10 @@ impl Deref for Mapped<'_> {
 
 impl Drop for Mapped<'_> {
     fn drop(&mut self) {
-        if let Some(output) = &self.renderer.output {
-            // A driver that refuses has lost the device; the next call on it will say so.
-            let _ = output.unmap(&self.renderer.compute, self.pointer);
-        }
+        let output = self.renderer.output.take();
+        // A driver that refuses may have lost the device: the next call on it will say so. If it has not, the next image needs
+        // a buffer of its own, since nothing may be written to one that is mapped.
+        self.renderer.output =
+            output.filter(|output| output.unmap(&self.renderer.compute, self.pointer).is_ok());
     }
 }

@@ -46,8 +46,8 @@ impl Pace {
         if evaluations == 0.0 {
             return;
         }
-        // A launch much below the pace says more about the overhead than about the device.
-        if evaluations > 0.1 * self.evaluations || possible < self.evaluations {
+        // A launch much below the pace says more about the overhead than about the device, unless it took too long.
+        if evaluations > 0.1 * self.evaluations || time > TARGET {
             self.evaluations = possible.clamp(1e4, MOST_GROWTH * self.evaluations);
         }
     }

@@ -1,20 +1,23 @@
 //! Builds the kernels for a device, with readable logs, and runs them.
 
-use std::ffi::CString;
+use std::ffi::{CStr, CString};
 use std::ptr;
 use std::time::Duration;
 
 use bytemuck::Pod;
-use opencl3::error_codes::ClError;
+use opencl3::error_codes::{CL_INVALID_KERNEL_NAME, ClError};
 use opencl3::event::Event;
-use opencl3::kernel::Kernel;
-use opencl3::program::Program as ClProgram;
+use opencl3::kernel::{Kernel, create_kernel};
+use opencl3::program::{
+    CL_PROGRAM_BINARIES, CL_PROGRAM_BUILD_LOG, build_program, create_program_with_binary,
+    create_program_with_source, get_program_build_info, get_program_info,
+};
 use opencl3::types::cl_mem;
 
 use super::counts::{self, Counts};
 use super::depths::Depths;
 use super::failure::{code_name, failed};
-use super::handle::Handle;
+use super::handle::{Handle, RawProgram};
 use super::{Compute, DeviceBuffer, KernelCache, ProgramKey, Uploaded, source};
 use crate::error::{Error, Result};
 use crate::pack::{Rule, layout};
@@ -48,7 +51,7 @@ pub struct BuildOptions {
 /// A built program.
 #[derive(Debug)]
 pub struct Program {
-    program: Handle<ClProgram>,
+    program: Handle<RawProgram>,
     device: String,
     key: ProgramKey,
     /// Lanes it was built for.
@@ -86,13 +89,11 @@ impl Program {
             code,
             log,
         };
-        if CString::new(flags.as_str()).is_err() {
-            return Err(refused(
-                "options contain a NUL byte".to_owned(),
-                String::new(),
-            ));
-        }
         let key = ProgramKey::new(device, text, &flags);
+        let Ok(flags) = CString::new(flags) else {
+            let fault = "options contain a NUL byte".to_owned();
+            return Err(refused(fault, String::new()));
+        };
         let built = |program| Self {
             program,
             device: device.name.clone(),
@@ -104,12 +105,14 @@ impl Program {
         if let Some(program) = kept.and_then(|binary| from_binary(compute, &binary, &flags)) {
             return Ok(built(program));
         }
-        let mut program = ClProgram::create_from_source(&compute.context, text)
-            .map(Handle::new)
+        let program = create_program_with_source(compute.context.get(), &[text])
+            .map(|program| Handle::new(RawProgram::new(program)))
+            .map_err(ClError)
             .map_err(failed(&device.name, "clCreateProgramWithSource"))?;
-        let id = device.handle.id();
-        program.build(&[id], &flags).map_err(|ClError(code)| {
-            let log = program.get_build_log(id).unwrap_or_default();
+        build(compute, &program, &flags).map_err(|code| {
+            let log =
+                get_program_build_info(program.get(), device.handle.id(), CL_PROGRAM_BUILD_LOG);
+            let log = log.map(String::from).unwrap_or_default();
             let chosen = format!("LANES={lanes} {}", options.extra);
             refused(format!("{}, {}", code_name(code), chosen.trim()), log)
         })?;
@@ -131,25 +134,35 @@ impl Program {
     /// # Errors
     /// [`Error::Device`] if there is no such kernel.
     pub(super) fn kernel(&self, name: &str) -> Result<Handle<Kernel>> {
-        Kernel::create(&self.program, name)
-            .map(Handle::new)
-            .map_err(failed(&self.device, "clCreateKernel"))
+        let refused = failed(&self.device, "clCreateKernel");
+        let Ok(name) = CString::new(name) else {
+            return Err(refused(ClError(CL_INVALID_KERNEL_NAME)));
+        };
+        create_kernel(self.program.get(), &name)
+            .map(|kernel| Handle::new(Kernel::new(kernel)))
+            .map_err(|code| refused(ClError(code)))
     }
 }
 
+fn build(compute: &Compute, program: &RawProgram, flags: &CStr) -> std::result::Result<(), i32> {
+    let devices = [compute.device.handle.id()];
+    build_program(program.get(), &devices, flags, None, ptr::null_mut())
+}
+
 /// A program that was built before; `None` where the driver refuses it.
-fn from_binary(compute: &Compute, binary: &[u8], flags: &str) -> Option<Handle<ClProgram>> {
-    let id = compute.device.handle.id();
+fn from_binary(compute: &Compute, binary: &[u8], flags: &CStr) -> Option<Handle<RawProgram>> {
+    let (context, id) = (compute.context.get(), compute.device.handle.id());
     // SAFETY: the device belongs to the context.
-    let created = unsafe { ClProgram::create_from_binary(&compute.context, &[id], &[binary]) };
-    let mut program = created.map(Handle::new).ok()?;
-    program.build(&[id], flags).ok()?;
+    let created = unsafe { create_program_with_binary(context, &[id], &[binary]) };
+    let program = Handle::new(RawProgram::new(created.ok()?));
+    build(compute, &program, flags).ok()?;
     Some(program)
 }
 
 /// What the driver made of a program; `None` in a host's context of several devices, which has several.
-fn binary_of(program: &ClProgram) -> Option<Vec<u8>> {
-    let mut binaries = program.get_binaries().ok()?;
+fn binary_of(program: &RawProgram) -> Option<Vec<u8>> {
+    let found = get_program_info(program.get(), CL_PROGRAM_BINARIES).ok()?;
+    let mut binaries = Vec::<Vec<u8>>::from(found);
     let binary = binaries.pop().filter(|_| binaries.is_empty())?;
     (!binary.is_empty()).then_some(binary)
 }

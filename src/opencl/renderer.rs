@@ -8,7 +8,7 @@ use opencl3::command_queue::CommandQueue;
 use super::counts::Counts;
 use super::depths::Depths;
 use super::handle::Handle;
-use super::job::{Job, Wanted, grain_rows};
+use super::job::{Job, MOST_LANES, Wanted, grain_rows};
 use super::kernels::{Kernels, Variant};
 use super::launch::{Launched, Output};
 use super::lists::Lists;
@@ -156,7 +156,7 @@ impl OpenClRenderer {
             output.read(compute, &mut radiances[band])
         };
         let nothing = &mut |_: f32| ControlFlow::Continue(());
-        self.run(&job, 0..rays.len(), 1, &mut read, nothing)?;
+        self.run(&job, 0..rays.len(), MOST_LANES, &mut read, nothing)?;
         Ok(radiances)
     }
 

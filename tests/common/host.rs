@@ -6,6 +6,7 @@ use std::ptr;
 
 use energywave::opencl::HostTarget;
 use energywave::scene::ImageSize;
+use half::f16;
 use opencl3::command_queue::CommandQueue;
 use opencl3::context::Context;
 use opencl3::device::{CL_DEVICE_TYPE_ALL, Device as ClDevice};
@@ -141,7 +142,10 @@ impl Host {
             CL_HALF_FLOAT => {
                 let mut values = vec![0_u16; count];
                 read(values.as_mut_ptr().cast());
-                values.into_iter().map(from_half).collect()
+                values
+                    .into_iter()
+                    .map(|bits| f16::from_bits(bits).into())
+                    .collect()
             }
             other => panic!("images of type {other:#x} are not read here"),
         }
@@ -154,15 +158,5 @@ struct Borrowed<T>(std::mem::ManuallyDrop<T>);
 impl<T> Borrowed<T> {
     fn new(object: T) -> Self {
         Self(std::mem::ManuallyDrop::new(object))
-    }
-}
-
-/// A finite half as float.
-pub fn from_half(bits: u16) -> f32 {
-    let sign = if bits >> 15 == 0 { 1.0 } else { -1.0 };
-    let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023) / 1024.0);
-    match exponent {
-        0 => sign * fraction * 2.0_f32.powi(-14),
-        _ => sign * (1.0 + fraction) * 2.0_f32.powi(exponent - 15),
     }
 }

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
 
 pub mod host;
+#[cfg(unix)] // loads a shared library
+pub mod layer;
 pub mod occluders;
 pub mod program;
 pub mod random;
@@ -17,8 +19,15 @@ use energywave::scene::{
 use energywave::{BuildOptions, Device, DeviceType, RadianceImage, Renderer, Scene};
 use glam::DVec3;
 
-/// Every lane width that the kernels can be built for.
-pub const LANE_WIDTHS: [u32; 4] = [1, 4, 8, 16];
+/// Every lane width that the kernels can be built for; only the device's own on Intel's CPU runtime, which compiles each
+/// build for up to a minute.
+pub fn lane_widths() -> Vec<u32> {
+    let device = device();
+    match device.device_type == DeviceType::Cpu && device.platform.contains("Intel") {
+        true => vec![device.lanes],
+        false => vec![1, 4, 8, 16],
+    }
+}
 
 /// Spoils every field by 1 %: no comparison may pass with it.
 pub const BROKEN_FIELDS: &str = "-Dtwice_inverse_sqrt(x)=(2.02f/sqrt(x))";
@@ -44,9 +53,6 @@ pub fn compute() -> Compute {
     let device = found.iter().find(|d| d.name == name).unwrap();
     Compute::new(device).unwrap()
 }
-
-/// What the kernels need to hold every kind of source.
-pub const ALL_KINDS: &str = "-D SPHERES -D CYLINDERS -D BEAMS -D TORI -D CURVES";
 
 pub fn options(lanes: u32, extra: &str) -> BuildOptions {
     BuildOptions {
