@@ -1,7 +1,9 @@
 // The paper's method as it stands in the paper: one pixel a work-item, no lanes, every distance from scratch, square
 // roots and divisions, Cardano with cbrt, acos and cos (Watanabe, Abe, Konno 2015, eq. 7, 8-12, 20, 21, 23; appendix
 // A). Kept to compare with: benches/tables.rs.
-#include "types.h"
+#include "film.h"
+#include "view.h"
+#include "wave/types.h"
 
 float torus(const float3 p, __global const float *source) {
     const float3 from_center = p - (float3)(source[0], source[1], source[2]);
@@ -43,15 +45,16 @@ float bezier(const float3 point, __global const float *source) {
 
 // source: centre and radius of a torus about z, or three control points, seen from the eye; then coefficient, alpha,
 // beta.
-__kernel void plain(const View view, const Launch launch, __global const float *source, __global float4 *image) {
+__kernel void plain(const View view, const FilmPart part, const Integrand integrand, __global const float *source,
+                    __global float4 *image) {
     const uint pixel = get_global_id(0);
-    if (pixel >= launch.count)
+    if (pixel >= part.count)
         return;
     const float column = (float)(pixel % view.width), row = (float)(pixel / view.width);
     const float3 origin = (view.first_pixel + column * view.column_step + row * view.row_step).xyz;
     const float3 span = normalize(origin) * view.ray_length;
     __global const float *const numbers = source + (IS_TORUS ? 4 : 9);
-    const uint divisions = launch.node_count - 1;
+    const uint divisions = integrand.node_count - 1;
     float sum = 0.0f;
     for (uint k = 0; k <= divisions; ++k) {
         const float s = (float)k / (float)divisions;

@@ -69,8 +69,8 @@ fn main() {
                 let rule = Rule {
                     nodes: nodes_of_panel,
                     coarse: false,
-                    torus_threshold: threshold,
-                    curve_threshold: threshold,
+                    smooth_threshold: threshold,
+                    kinked_threshold: threshold,
                 };
                 let errors = errors(rule, &scenes);
                 let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize];

@@ -96,8 +96,11 @@ impl Plain {
         let mut image = vec![[0.0_f32; 4]; pixels];
         let output = DeviceBuffer::new(&self.compute, "the image", pixels).unwrap();
         let mut source = DeviceBuffer::new(&self.compute, "the source", 12).unwrap();
-        let launch = layout::Launch {
+        let part = layout::FilmPart {
             count: pixels as u32,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let integrand = layout::Integrand {
             node_count: scene.integration.divisions + 1,
             ..bytemuck::Zeroable::zeroed()
         };
@@ -112,7 +115,7 @@ impl Plain {
                 .run(
                     &self.compute,
                     "plain",
-                    &[&view, &launch, &source, &output],
+                    &[&view, &part, &integrand, &source, &output],
                     pixels,
                     64,
                 )

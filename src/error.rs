@@ -5,7 +5,11 @@ use std::path::PathBuf;
 /// Shorthand for results of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Everything that can go wrong. `Display` gives one message for people: what, where, why, and what to do.
+/// The cause of an error, where another library gave one.
+pub type Cause = Box<dyn std::error::Error + Send + Sync>;
+
+/// Everything that can go wrong. `Display` gives one message for people: what, where, why, and what to do;
+/// [`Error::kind`] and [`ErrorKind::code`] are for programs.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -15,14 +19,18 @@ pub enum Error {
 
     /// An input file cannot be read.
     #[error("{}: {reason}", path.display())]
+    #[non_exhaustive]
     Input {
         /// The file.
         path: PathBuf,
         /// Why it cannot be read.
         reason: String,
+        /// What the system or the decoder said.
+        #[source]
+        source: Option<Cause>,
     },
 
-    /// The chosen device lacks what the scene asks for.
+    /// The chosen device, or this build of the library, lacks what the scene or the caller asks for.
     #[error("{0}")]
     Unsupported(String),
 
@@ -32,6 +40,7 @@ pub enum Error {
 
     /// The device's compiler refused the kernels.
     #[error("{device}: building the kernels failed ({code}){}", log_lines(log))]
+    #[non_exhaustive]
     Build {
         /// Name of the device.
         device: String,
@@ -41,10 +50,10 @@ pub enum Error {
         log: String,
     },
 
-    /// Kernels gave a wrong answer where the right one is known: the driver compiled them wrongly, or the device is broken.
-    #[error(
-        "{device} computes wrong (driver {driver}): {reason}; update the driver, choose another device with --device, or insist on this one with --no-self-test (BuildOptions::skips_self_test)"
-    )]
+    /// Kernels gave a wrong answer where the right one is known: the driver compiled them wrongly, or the device is
+    /// broken. [`RendererOptions::skips_self_test`](crate::RendererOptions::skips_self_test) insists on the device.
+    #[error("{device} computes wrong (driver {driver}): {reason}; update the driver, or choose another device")]
+    #[non_exhaustive]
     SelfTest {
         /// Name of the device.
         device: String,
@@ -56,6 +65,7 @@ pub enum Error {
 
     /// A call to OpenCL failed.
     #[error("{device}: {call} failed ({code}); {advice}")]
+    #[non_exhaustive]
     Device {
         /// Name of the device.
         device: String,
@@ -65,10 +75,14 @@ pub enum Error {
         code: String,
         /// What to try.
         advice: &'static str,
+        /// The number that the driver gave, as an error.
+        #[source]
+        source: Option<Cause>,
     },
 
     /// Something of a host's OpenCL does not fit. Nothing was enqueued.
     #[error("the host's {object}: {reason}")]
+    #[non_exhaustive]
     Host {
         /// What: context, queue, buffer, image or wait list.
         object: &'static str,
@@ -86,11 +100,15 @@ pub enum Error {
 
     /// The output cannot be written. Nothing is left behind.
     #[error("{}: cannot write: {reason}", path.display())]
+    #[non_exhaustive]
     Output {
         /// The file that was asked for.
         path: PathBuf,
         /// Why it cannot be written.
         reason: String,
+        /// What the system or the encoder said.
+        #[source]
+        source: Option<Cause>,
     },
 
     /// The caller's progress function asked to stop.
@@ -98,8 +116,117 @@ pub enum Error {
     Interrupted,
 }
 
+/// What kind of thing went wrong; programs match on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// See [`Error::Scene`].
+    Scene,
+    /// See [`Error::Input`].
+    Input,
+    /// See [`Error::Unsupported`].
+    Unsupported,
+    /// See [`Error::NoSuchDevice`].
+    NoSuchDevice,
+    /// See [`Error::Build`].
+    Build,
+    /// See [`Error::SelfTest`].
+    SelfTest,
+    /// See [`Error::Device`].
+    Device,
+    /// See [`Error::Host`].
+    Host,
+    /// See [`Error::OutOfMemory`].
+    OutOfMemory,
+    /// See [`Error::OutputFormat`].
+    OutputFormat,
+    /// See [`Error::Output`].
+    Output,
+    /// See [`Error::Interrupted`].
+    Interrupted,
+}
+
+impl ErrorKind {
+    /// The kind's name for other languages and for logs. It never changes.
+    #[must_use]
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Scene => "scene",
+            Self::Input => "input",
+            Self::Unsupported => "unsupported",
+            Self::NoSuchDevice => "no-such-device",
+            Self::Build => "build",
+            Self::SelfTest => "self-test",
+            Self::Device => "device",
+            Self::Host => "host",
+            Self::OutOfMemory => "out-of-memory",
+            Self::OutputFormat => "output-format",
+            Self::Output => "output",
+            Self::Interrupted => "interrupted",
+        }
+    }
+}
+
+impl Error {
+    /// What kind of thing went wrong.
+    #[must_use]
+    pub fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Scene(_) => ErrorKind::Scene,
+            Self::Input { .. } => ErrorKind::Input,
+            Self::Unsupported(_) => ErrorKind::Unsupported,
+            Self::NoSuchDevice(_) => ErrorKind::NoSuchDevice,
+            Self::Build { .. } => ErrorKind::Build,
+            Self::SelfTest { .. } => ErrorKind::SelfTest,
+            Self::Device { .. } => ErrorKind::Device,
+            Self::Host { .. } => ErrorKind::Host,
+            Self::OutOfMemory(_) => ErrorKind::OutOfMemory,
+            Self::OutputFormat(_) => ErrorKind::OutputFormat,
+            Self::Output { .. } => ErrorKind::Output,
+            Self::Interrupted => ErrorKind::Interrupted,
+        }
+    }
+
+    /// The stable name of its kind, see [`ErrorKind::code`].
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        self.kind().code()
+    }
+
+    /// An input file that cannot be read, for a reason of our own.
+    pub fn input(path: impl Into<PathBuf>, reason: impl Into<String>) -> Self {
+        Self::Input {
+            path: path.into(),
+            reason: reason.into(),
+            source: None,
+        }
+    }
+
+    /// An output that cannot be written, for a reason of our own.
+    pub fn output(path: impl Into<PathBuf>, reason: impl Into<String>) -> Self {
+        Self::Output {
+            path: path.into(),
+            reason: reason.into(),
+            source: None,
+        }
+    }
+
+    /// Adds what another library or the system said.
+    #[must_use]
+    pub fn caused_by(mut self, cause: impl Into<Cause>) -> Self {
+        if let Self::Input { source, .. }
+        | Self::Output { source, .. }
+        | Self::Device { source, .. } = &mut self
+        {
+            *source = Some(cause.into());
+        }
+        self
+    }
+}
+
 /// A value at fault in a scene: where it stands and what is wrong with it.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SceneError {
     /// The scene file, if the scene came from one.
     pub path: Option<PathBuf>,
@@ -122,6 +249,8 @@ impl SceneError {
         }
     }
 }
+
+impl std::error::Error for SceneError {}
 
 impl std::fmt::Display for SceneError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -23,7 +23,7 @@
 //! ```no_run
 //! use energywave::scene::{Camera, Decay, Profile, Torus};
 //! use energywave::{Device, Renderer, Scene};
-//! use glam::DVec3;
+//! use energywave::glam::DVec3;
 //!
 //! # fn main() -> energywave::Result<()> {
 //! let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
@@ -34,32 +34,41 @@
 //!     color: DVec3::new(0.15, 0.35, 1.0),
 //!     ..Torus::new(0.9)
 //! });
-//! let mut renderer = Renderer::new(&Device::best())?; // keeps kernels and buffers from frame to frame
+//! let mut renderer = Renderer::new(&Device::best()?)?; // keeps kernels and buffers from frame to frame
 //! let radiance = renderer.render(&scene)?; // linear RGBA in float32
-//! radiance.save("ring.exr", &scene.display)?;
-//! radiance.tone_map(&scene.display).save("ring.png")
+//! # #[cfg(feature = "files")]
+//! radiance.tone_map(&scene.display).save("ring.png")?;
+//! # Ok(())
 //! # }
 //! ```
+//!
+//! Features, all on by default: `files` (EXR and PNG images, TOML and JSON scenes), `kernel-cache` (built kernels on disk,
+//! for drivers that keep none), `papers` (the papers' tables), `cli` (the program, with all of these).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub mod bench;
-pub mod device;
+mod cost;
 mod error;
 pub mod image;
+#[doc(hidden)]
+pub mod internals;
 mod memory;
-pub mod opencl;
-pub mod pack;
-pub mod ray;
+mod opencl;
+#[cfg(feature = "papers")]
+pub mod papers;
 pub mod reference;
-mod renderer;
+mod render;
 pub mod scene;
-mod several;
-mod shares;
+#[cfg(feature = "files")]
 pub mod verify;
+mod wave;
 
-pub use device::{Device, DeviceType, Devices};
-pub use error::{Error, Result, SceneError};
+pub use cost::FrameCost;
+pub use error::{Cause, Error, ErrorKind, Result, SceneError};
+pub use glam; // whose vectors are in scenes
 pub use image::{DisplayImage, RadianceImage};
-pub use opencl::{BuildOptions, KernelCache};
-pub use renderer::{FrameCost, MappedImage, Renderer};
-pub use scene::Scene;
+#[cfg(feature = "kernel-cache")]
+pub use opencl::KernelCache;
+pub use opencl::{DeviceType, HostTarget, RendererOptions, keep_pocl_threads_apart};
+pub use opencl3; // whose handles hosts give
+pub use render::{Device, Devices, MappedImage, Renderer};
+pub use scene::{Ray, Scene};

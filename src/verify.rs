@@ -6,10 +6,11 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::ray::Ray;
 use crate::reference;
-use crate::renderer::Renderer;
-use crate::scene::{Beam, Camera, Curve, Cylinder, Decay, Method, Profile, Scene, Sphere, Torus};
+use crate::render::Renderer;
+use crate::scene::{
+    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Method, Profile, Ray, Scene, Sphere, Torus,
+};
 
 /// The rays that every copy of the crate carries.
 const BUILT_IN: &str = include_str!("../tests/data/rays.json");
@@ -26,55 +27,70 @@ pub const SIMPSON_LIMIT_CLOSE: f64 = 1e-3;
 /// A ray is close to a core below this distance, world units.
 pub const CLOSE: f64 = 0.01;
 
-/// A ray past one source of coefficient 1, and its integrals.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+/// A ray whose integral is known.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct KnownRay {
-    /// Kind of the source.
+    /// Kind of the source; `scene` for a whole scene.
     pub kind: String,
-    /// S.
-    pub start: DVec3,
-    /// E.
-    pub end: DVec3,
-    /// Decay alpha.
-    pub alpha: f64,
-    /// Decay beta.
-    pub beta: f64,
-    /// The integral over s in `[0,1]`.
+    /// The ray itself.
+    pub ray: Ray,
+    /// What glows along it; `None` for a kind that this version does not draw.
+    pub scene: Option<Scene>,
+    /// The integral of the scene's green light.
     pub exact: f64,
-    /// Its composite Simpson sum with 200 divisions.
-    pub simpson_200: f64,
+    /// Its composite Simpson sum with 200 divisions, if it is known.
+    pub simpson_200: Option<f64>,
+}
+
+/// A ray as files have it: past a whole scene, or past one source of coefficient 1.
+#[derive(Deserialize)]
+struct RayRecord {
+    start: DVec3,
+    end: DVec3,
+    exact: f64,
+    #[serde(default)]
+    simpson_200: Option<f64>,
+    /// As in a JSON scene file; the camera may be absent.
+    #[serde(default)]
+    scene: Option<serde_json::Value>,
+    #[serde(default)]
+    kind: Option<String>,
+    #[serde(default)]
+    alpha: Option<f64>,
+    #[serde(default)]
+    beta: Option<f64>,
     /// Centre of a sphere or torus, point of a cylinder, tip of a beam.
     #[serde(default)]
-    pub center: DVec3,
+    center: DVec3,
     /// Direction of a cylinder or beam.
     #[serde(default)]
-    pub direction: DVec3,
+    direction: DVec3,
     /// How far behind its tip a beam fades.
     #[serde(default)]
-    pub taper_length: f64,
+    taper_length: f64,
     /// Axis of a torus.
     #[serde(default)]
-    pub axis: DVec3,
-    /// Radius of a torus.
+    axis: DVec3,
     #[serde(default)]
-    pub major_radius: f64,
-    /// Control points of a curve.
+    major_radius: f64,
     #[serde(default)]
-    pub control_points: [DVec3; 3],
+    control_points: [DVec3; 3],
     /// Local-intensity series of a curve; empty: none.
     #[serde(default)]
-    pub weights: Vec<f64>,
+    weights: Vec<f64>,
 }
 
 /// What a device made of a ray.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Row {
     /// Place of the ray in its file, from 0.
     pub index: usize,
     /// Kind of the source.
     pub kind: String,
-    /// The method checked.
-    pub method: Method,
+    /// Name of the method checked: `simpson` or `exact`.
+    pub method: &'static str,
     /// Name of the device.
     pub device: String,
     /// The integral itself.
@@ -96,7 +112,7 @@ impl Row {
     }
 }
 
-/// The built-in rays.
+/// Returns the built-in rays.
 ///
 /// # Errors
 /// [`Error::Input`] never, unless the crate was changed.
@@ -104,48 +120,60 @@ pub fn built_in_rays() -> Result<Vec<KnownRay>> {
     parse(BUILT_IN, Path::new("tests/data/rays.json"))
 }
 
-/// Rays from a JSON file.
+/// Reads rays from a JSON file.
 ///
 /// # Errors
 /// [`Error::Input`] with line and column if the file cannot be read or understood.
 pub fn rays_from_file(path: &Path) -> Result<Vec<KnownRay>> {
-    let text = std::fs::read_to_string(path).map_err(|error| Error::Input {
-        path: path.to_owned(),
-        reason: format!("cannot read: {error}"),
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        Error::input(path, format!("cannot read: {error}")).caused_by(error)
     })?;
     parse(&text, path)
 }
 
 fn parse(text: &str, path: &Path) -> Result<Vec<KnownRay>> {
-    let fail = |reason: String| Error::Input {
-        path: path.to_owned(),
-        reason,
-    };
-    let rays: Vec<KnownRay> =
-        serde_json::from_str(text).map_err(|error| fail(format!("not a list of rays: {error}")))?;
-    for (index, ray) in rays.iter().enumerate() {
-        if let Some(fault) = ray.ray().fault() {
-            return Err(fail(format!("ray {index}: {fault}")));
-        }
-        if let Some(scene) = ray.scene() {
-            scene
-                .validate()
-                .map_err(|error| fail(format!("ray {index}: {error}")))?;
-        }
-    }
-    Ok(rays)
+    let fail = |reason: String| Error::input(path, reason);
+    let records: Vec<RayRecord> = serde_json::from_str(text)
+        .map_err(|error| fail(format!("not a list of rays: {error}")).caused_by(error))?;
+    let known = records.into_iter().enumerate().map(|(index, record)| {
+        record
+            .known()
+            .map_err(|fault| fail(format!("ray {index}: {fault}")))
+    });
+    known.collect()
 }
 
-impl KnownRay {
-    /// The scene of its one source; `None` for a kind that this version does not draw.
-    pub fn scene(&self) -> Option<Scene> {
+impl RayRecord {
+    fn known(self) -> std::result::Result<KnownRay, String> {
+        let ray = Ray::between(self.start, self.end);
+        if let Some(fault) = ray.fault() {
+            return Err(fault.to_owned());
+        }
+        let (kind, scene) = match (&self.scene, &self.kind) {
+            (Some(scene), _) => ("scene".to_owned(), Some(whole_scene(scene.clone())?)),
+            (None, Some(kind)) => (kind.clone(), self.scene_of(kind)?),
+            (None, None) => return Err("neither a kind nor a scene".to_owned()),
+        };
+        if let Some(scene) = &scene {
+            scene.validate().map_err(|error| error.to_string())?;
+        }
+        Ok(KnownRay {
+            kind,
+            ray,
+            scene,
+            exact: self.exact,
+            simpson_200: self.simpson_200,
+        })
+    }
+
+    /// The scene of one source; `None` for a kind that this version does not draw.
+    fn scene_of(&self, kind: &str) -> std::result::Result<Option<Scene>, String> {
+        let (Some(alpha), Some(beta)) = (self.alpha, self.beta) else {
+            return Err("alpha or beta is missing".to_owned());
+        };
         let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO));
-        scene.decay = Some(Decay {
-            alpha: self.alpha,
-            beta: self.beta,
-        });
-        scene.integration.divisions = DIVISIONS;
-        match self.kind.as_str() {
+        scene.decay = Some(Decay { alpha, beta });
+        match kind {
             "sphere" => scene.spheres.push(Sphere {
                 center: self.center,
                 ..Sphere::default()
@@ -165,7 +193,7 @@ impl KnownRay {
             }),
             "beam-inverse-square" => scene.beams.push(Beam {
                 tip: self.center,
-                taper_length: Some(self.taper_length),
+                end: BeamEnd::Taper(self.taper_length),
                 profile: Profile::InverseSquare,
                 ..Beam::new(self.direction)
             }),
@@ -180,63 +208,80 @@ impl KnownRay {
                     ..Curve::new(self.control_points)
                 });
             }
-            _ => return None,
+            _ => return Ok(None),
         }
-        Some(scene)
+        Ok(Some(scene))
     }
+}
 
-    /// The ray itself.
-    pub fn ray(&self) -> Ray {
-        Ray::between(self.start, self.end)
+/// A scene as in a JSON scene file, of which the camera plays no part.
+fn whole_scene(mut scene: serde_json::Value) -> std::result::Result<Scene, String> {
+    if let Some(tables) = scene.as_object_mut()
+        && !tables.contains_key("camera")
+    {
+        let anywhere = serde_json::json!({"eye": [0.0, -4.0, 0.0], "target": [0.0, 0.0, 0.0]});
+        tables.insert("camera".to_owned(), anywhere);
     }
+    Scene::from_json(&scene.to_string()).map_err(|error| error.to_string())
+}
 
-    /// Least distance from the ray to the core, world units; 0 for a kind that this version does not draw.
+impl KnownRay {
+    /// Finds the least distance from the ray to a core, world units; 0 for a kind that this version does not draw.
+    #[must_use]
     pub fn miss(&self) -> f64 {
-        let Some(scene) = self.scene() else {
+        let Some(scene) = &self.scene else {
             return 0.0;
         };
-        let ray = self.ray();
         let mut breaks = vec![0.0, 1.0];
-        let sources = reference::sources(&scene);
+        let sources = reference::sources(scene);
         let distances = sources.iter().flat_map(|source| {
-            source.field.breaks(&ray, &mut breaks);
+            source.field.breaks(&self.ray, &mut breaks);
             let within: Vec<f64> = breaks.iter().map(|s| s.clamp(0.0, 1.0)).collect();
-            let distance = |s: f64| source.field.sample(ray.at(s)).distance2.sqrt();
+            let distance = |s: f64| source.field.sample(self.ray.at(s)).distance2.sqrt();
             within.into_iter().map(distance).collect::<Vec<_>>()
         });
         distances.fold(f64::INFINITY, f64::min)
     }
+
+    /// What a method should give, and the largest relative error allowed; `None` if that is not known.
+    fn expected(&self, method: Method) -> Option<(f64, f64)> {
+        match method {
+            Method::Exact { tolerance, .. } => Some((self.exact, tolerance)),
+            Method::Simpson { .. } => {
+                let limit = match self.miss() > CLOSE {
+                    true => SIMPSON_LIMIT,
+                    false => SIMPSON_LIMIT_CLOSE,
+                };
+                Some((self.simpson_200?, limit))
+            }
+        }
+    }
 }
 
-/// Sends the rays of every kind that this version draws through a device, by a method it has.
+/// Sends the rays of every kind that this version draws through a device, by a method whose value is known: `exact`, or
+/// `simpson` with [`DIVISIONS`] divisions.
 ///
 /// # Errors
-/// As [`Renderer::trace`].
+/// As [`Renderer::integrate`].
 pub fn verify(
     renderer: &mut Renderer,
     device: &str,
     rays: &[KnownRay],
     method: Method,
-    tolerance: f64,
 ) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for (index, ray) in rays.iter().enumerate() {
-        let Some(mut scene) = ray.scene() else {
+        let (Some(scene), Some((expected, limit))) = (&ray.scene, ray.expected(method)) else {
             continue;
         };
+        let mut scene = scene.clone();
         scene.integration.method = method;
-        scene.integration.tolerance = tolerance;
-        let traced = renderer.trace(&scene, &[ray.ray()])?;
-        let value = traced.first().map_or(f64::NAN, |radiance| radiance[0]);
-        let (expected, limit) = match method {
-            Method::Exact => (ray.exact, tolerance),
-            Method::Simpson if ray.miss() > CLOSE => (ray.simpson_200, SIMPSON_LIMIT),
-            Method::Simpson => (ray.simpson_200, SIMPSON_LIMIT_CLOSE),
-        };
+        let integrals = renderer.integrate(&scene, &[ray.ray])?;
+        let value = integrals.first().map_or(f64::NAN, |[_, green, _]| *green);
         rows.push(Row {
             index,
             kind: ray.kind.clone(),
-            method,
+            method: method.name(),
             device: device.to_owned(),
             exact: ray.exact,
             expected,

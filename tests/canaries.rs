@@ -24,18 +24,27 @@ fn marks_left(
     let scene = full_scene(width, height);
     let compute = common::compute();
     // What is stored does not depend on the kinds of source.
-    let options = common::options(lanes, &format!("-D SPHERES {method} {extra}"));
-    let file = format!("{kernel}.cl");
-    let program = Program::build(&compute, &[file.as_str()], &options).unwrap();
+    let options = common::options(lanes, &format!("{method} {extra}"));
+    let file = match kernel {
+        "tiles" => "wave/tiles/tiles.cl",
+        _ => "wave/render.cl",
+    };
+    let spheres = [true, false, false, false, false];
+    let program = Program::build(&compute, &[file], spheres, &options).unwrap();
     let plane = ViewPlane::new(&scene.camera, scene.image);
     let packed = Sources::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
     let nodes = pack::nodes(20, scene.decay);
-    let launch = layout::Launch {
+    let part = layout::FilmPart {
         count: width * height,
+        width,
         is_last: 1,
-        node_count: nodes.len() as u32,
-        sphere_end: packed.spheres.len() as u32,
         ..bytemuck::Zeroable::zeroed()
+    };
+    let rule = Rule::of(&scene.integration, false);
+    let integrand = pack::integrand(&scene, &rule, nodes.len() as u32);
+    let launch = layout::Launch {
+        begin: [0; layout::KIND_COUNT],
+        end: [packed.spheres.len() as u32, 0, 0, 0, 0],
     };
     fn upload<T: bytemuck::Pod>(
         compute: &energywave::opencl::Compute,
@@ -61,13 +70,9 @@ fn marks_left(
         pixel_step: 1e-3,
         ..bytemuck::Zeroable::zeroed()
     };
-    let lists: [&dyn Argument; 9] = [
+    let lists: [&dyn Argument; 5] = [
         &upload(&compute, &nodes),
         &upload(&compute, &packed.spheres),
-        &upload(&compute, &packed.cylinders),
-        &upload(&compute, &packed.beams),
-        &upload(&compute, &packed.tori),
-        &upload(&compute, &packed.curves),
         &upload(&compute, &packed.spline_pieces),
         &upload(&compute, &[0_u32; 16]),
         &upload(&compute, &vec![5.0_f32; pixels]),
@@ -76,7 +81,7 @@ fn marks_left(
         upload(&compute, &[0_u32; 6]),
         upload(&compute, &[0.0_f32; 48]),
     );
-    let mut arguments: Vec<&dyn Argument> = vec![&view, &launch];
+    let mut arguments: Vec<&dyn Argument> = vec![&view, &part, &integrand, &launch];
     arguments.extend(lists);
     arguments.push(&output);
     if has_halves {

@@ -1,11 +1,11 @@
-//! The device structs agree between host and device: sizes in every build (`cl/types.h`), offsets at compile time
-//! (`src/pack/layout.rs`), and here every field by its name.
+//! The device structs agree between host and device: sizes in every build (`CHECK_SIZE` beside each struct in `cl/`),
+//! offsets at compile time (`src/pack/layout.rs`), and here every field by its name.
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
 use energywave::opencl::{DeviceBuffer, Program};
-use energywave::pack::layout::{STRUCTS, StructLayout};
+use energywave::pack::layout::{KIND_COUNT, STRUCTS, StructLayout};
 
 /// A kernel that copies every 32-bit word of every field, reached by the field's name, in the order of the host's list.
 fn copy_fields(layout: &StructLayout) -> String {
@@ -21,7 +21,7 @@ fn copy_fields(layout: &StructLayout) -> String {
         })
         .collect();
     format!(
-        "#include \"types.h\"\n__kernel void copy_fields(__global const {} *record, __global uint *words) {{\n    \
+        "#include \"film.h\"\n#include \"view.h\"\n#include \"wave/kinds.h\"\n#include \"wave/types.h\"\n__kernel void copy_fields(__global const {} *record, __global uint *words) {{\n    \
          uint next = 0;\n{copies}}}\n",
         layout.name
     )
@@ -79,8 +79,9 @@ fn two_swapped_fields_are_noticed() {
 fn a_struct_of_another_size_stops_the_build() {
     let compute = common::compute();
     let options = common::options(1, "-DSIZEOF_TORUS=60");
-    let error = Program::build(&compute, &["render.cl"], &options).unwrap_err();
+    let error =
+        Program::build(&compute, &["wave/render.cl"], [true; KIND_COUNT], &options).unwrap_err();
     let message = error.to_string();
     assert!(message.contains("Torus_has_the_size"), "{message}");
-    assert!(message.contains("cl/types.h"), "{message}");
+    assert!(message.contains("cl/wave/source/torus.h"), "{message}");
 }

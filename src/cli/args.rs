@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use energywave::image::{DepthAlong, DepthImage};
-use energywave::scene::{ImageSize, Method, Sampling, Scene};
-use energywave::{BuildOptions, Error};
+use energywave::image::{DepthAlong, DepthImage, ImageSize};
+use energywave::scene::{Method, MethodKeys, Sampling, Scene};
+use energywave::{Error, RendererOptions};
 
 /// Volumetric energy effects, integrated along every view ray on any OpenCL device.
 #[derive(Debug, Parser)]
@@ -124,12 +124,11 @@ pub struct DeviceArgument {
 }
 
 impl DeviceArgument {
-    /// How the kernels are built.
-    pub fn options(&self) -> BuildOptions {
-        BuildOptions {
-            skips_self_test: self.no_self_test,
-            ..BuildOptions::default()
-        }
+    /// What was typed, as the library has it.
+    pub fn options(&self) -> RendererOptions {
+        let mut options = RendererOptions::default();
+        options.skips_self_test = self.no_self_test;
+        options
     }
 }
 
@@ -207,56 +206,59 @@ impl Overrides {
             && self.depth.is_none()
     }
 
-    /// Replaces what was typed.
-    pub fn apply(&self, scene: &mut Scene) -> Result<(), Error> {
+    /// Replaces what was typed. `keys` is what the file says of either method.
+    pub fn apply(&self, scene: &mut Scene, keys: &MethodKeys) -> Result<(), Error> {
         if let Some(size) = self
             .size
             .filter(|size| size.width.max(size.height) > ImageSize::LIMIT)
         {
-            return Err(Error::Input {
-                path: "--size".into(),
-                reason: format!(
+            return Err(Error::input(
+                "--size",
+                format!(
                     "{}x{} pixels; an image is at most {limit}x{limit}",
                     size.width,
                     size.height,
                     limit = ImageSize::LIMIT
                 ),
-            });
+            ));
         }
         scene.image = self.size.unwrap_or(scene.image);
         if let Some(file) = &self.depth {
             scene.depth = Some(self.open_depth(file, scene.image)?);
         }
-        let integration = &mut scene.integration;
-        integration.divisions = self.divisions.unwrap_or(integration.divisions);
-        integration.tolerance = self.tolerance.unwrap_or(integration.tolerance);
-        let (asks_simpson, asks_exact) = (
-            self.divisions.is_some(),
-            self.tolerance.is_some() || self.sampling.is_some(),
-        );
-        integration.method = match self.method {
-            Some(MethodName::Simpson) => Method::Simpson,
-            Some(MethodName::Exact) => Method::Exact,
-            // Who names divisions wants them; who names a tolerance wants that met.
-            None if asks_simpson && !asks_exact => Method::Simpson,
-            None if asks_exact && !asks_simpson => Method::Exact,
-            None => integration.method,
-        };
-        if integration.method == Method::Simpson {
-            if self.sampling == Some(SamplingName::Tiles) {
-                let message =
-                    "--sampling tiles is for --method exact; Simpson's rule takes every pixel";
-                return Err(Error::Unsupported(message.to_owned()));
-            }
-            // What the file says of the method that it names.
-            integration.sampling = None;
-        }
-        integration.sampling = match self.sampling {
-            Some(SamplingName::Pixels) => Some(Sampling::Pixels),
-            Some(SamplingName::Tiles) => Some(Sampling::Tiles),
-            None => integration.sampling,
-        };
+        scene.integration.method = self.method(scene.integration.method, keys)?;
         Ok(())
+    }
+
+    fn method(&self, of_scene: Method, keys: &MethodKeys) -> Result<Method, Error> {
+        let asks_simpson = self.divisions.is_some();
+        let asks_exact = self.tolerance.is_some() || self.sampling.is_some();
+        let is_simpson = match self.method {
+            Some(MethodName::Simpson) => true,
+            Some(MethodName::Exact) => false,
+            // Who names divisions wants them; who names a tolerance wants that met.
+            None if asks_simpson != asks_exact => asks_simpson,
+            None => matches!(of_scene, Method::Simpson { .. }),
+        };
+        if is_simpson && self.sampling == Some(SamplingName::Tiles) {
+            let message =
+                "--sampling tiles is for --method exact; Simpson's rule takes every pixel";
+            return Err(Error::Unsupported(message.to_owned()));
+        }
+        let sampling = match self.sampling {
+            Some(SamplingName::Pixels) => Sampling::Pixels,
+            Some(SamplingName::Tiles) => Sampling::Tiles,
+            None => keys.sampling,
+        };
+        Ok(match is_simpson {
+            true => Method::Simpson {
+                divisions: self.divisions.unwrap_or(keys.divisions),
+            },
+            false => Method::Exact {
+                tolerance: self.tolerance.unwrap_or(keys.tolerance),
+                sampling,
+            },
+        })
     }
 
     /// The image of `--depth`, for an image of this size.
@@ -268,13 +270,13 @@ impl Overrides {
         let depth = DepthImage::open(file, along)?;
         let size = depth.size();
         if size != image {
-            return Err(Error::Input {
-                path: file.to_owned(),
-                reason: format!(
+            return Err(Error::input(
+                file,
+                format!(
                     "{}x{} pixels, the image has {}x{}; they must be equal",
                     size.width, size.height, image.width, image.height
                 ),
-            });
+            ));
         }
         Ok(depth)
     }

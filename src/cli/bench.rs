@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::time::Duration;
 
-use energywave::bench::{
+use energywave::papers::{
     DIVISIONS, PAPER_CPU_FPS, RESOLUTIONS, Speed, TABLE_2010, Table, exact_cost, measure,
     single_threaded_fps,
 };
-use energywave::image::Output;
+use energywave::image::ImageFile;
 use energywave::scene::{Method, Sampling};
 use energywave::{Device, DeviceType, Error, Renderer, Scene};
 use serde::Serialize;
@@ -59,7 +59,7 @@ struct SceneSpeed {
     scene: String,
     width: u32,
     height: u32,
-    method: Method,
+    method: &'static str,
     sampling: Sampling,
     fps: f64,
     kernel_ms: f64,
@@ -126,9 +126,9 @@ fn bench_table_2010(arguments: &BenchArguments) -> Outcome {
     let mut cells: Vec<BeamCell> = Vec::new();
     for (number, known) in TABLE_2010.into_iter().enumerate() {
         let mut scene = known.scene()?;
-        scene.integration.sampling = Some(Sampling::Tiles);
+        scene.integration.method = exact(Sampling::Tiles);
         let by_tiles = measure(&mut renderer, &scene, time(arguments))?;
-        scene.integration.sampling = Some(Sampling::Pixels);
+        scene.integration.method = exact(Sampling::Pixels);
         let speed = measure(&mut renderer, &scene, time(arguments))?;
         let depth = if known.has_depth { "-depth" } else { "" };
         let name = format!("beam-{}{depth}.exr", known.resolution);
@@ -159,6 +159,13 @@ fn bench_table_2010(arguments: &BenchArguments) -> Outcome {
         print_json(&cells)?;
     }
     Ok(())
+}
+
+fn exact(sampling: Sampling) -> Method {
+    Method::Exact {
+        tolerance: 1e-3,
+        sampling,
+    }
 }
 
 fn print_beam_cell(cell: &BeamCell, is_first: bool) -> Outcome {
@@ -212,13 +219,13 @@ fn print_cell(cell: &Cell, is_first: bool) -> Outcome {
 }
 
 fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
-    let scene = Scene::from_file_with(path, |scene| arguments.overrides.apply(scene))?;
+    let scene = Scene::from_file_with(path, |scene, keys| arguments.overrides.apply(scene, keys))?;
     let (devices, mut renderer) = prepare(arguments)?;
     let speed = measure(&mut renderer, &scene, time(arguments))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     save(arguments, &format!("{stem}.exr"), &speed, &scene)?;
     let cost = match (scene.integration.method, &devices[0]) {
-        (Method::Exact, device) if device.device_type != DeviceType::Reference => {
+        (Method::Exact { .. }, device) if device.device_type != DeviceType::Reference => {
             exact_cost(device, &scene)?
         }
         _ => speed.cost,
@@ -227,12 +234,12 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
         scene: path.display().to_string(),
         width: scene.image.width,
         height: scene.image.height,
-        method: scene.integration.method,
+        method: scene.integration.method.name(),
         sampling: scene.sampling(),
         fps: speed.fps,
         kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
-        evaluations: cost.evaluations,
-        field_evaluations: cost.field_evaluations,
+        evaluations: cost.integrals,
+        field_evaluations: cost.samples,
         frame: speed.frame,
         device: names(&devices),
     };
@@ -253,10 +260,8 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
 
 fn prepare(arguments: &BenchArguments) -> Result<(Vec<Device>, Renderer), super::Failure> {
     if let Some(folder) = &arguments.frames_out {
-        std::fs::create_dir_all(folder).map_err(|error| Error::Output {
-            path: folder.clone(),
-            reason: error.to_string(),
-        })?;
+        std::fs::create_dir_all(folder)
+            .map_err(|error| Error::output(folder, error.to_string()).caused_by(error))?;
     }
     let devices = choose_devices(arguments.device.device.as_deref())?;
     let renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
@@ -277,7 +282,7 @@ fn time(arguments: &BenchArguments) -> Duration {
 /// Writes the last frame if frames are wanted.
 fn save(arguments: &BenchArguments, name: &str, speed: &Speed, scene: &Scene) -> Outcome {
     if let Some(folder) = &arguments.frames_out {
-        Output::create(folder.join(name))?.write(&speed.image, &scene.display)?;
+        ImageFile::create(folder.join(name))?.write(&speed.image, &scene.display)?;
     }
     Ok(())
 }

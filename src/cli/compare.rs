@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use energywave::bench::{Accuracy, accuracies};
+use energywave::papers::{Accuracy, accuracies};
 use energywave::scene::Method;
 use energywave::{Device, Renderer, Scene};
 use serde::Serialize;
@@ -13,7 +13,7 @@ use super::{Outcome, choose_devices, note, print, print_json};
 
 #[derive(Serialize)]
 struct Row {
-    method: Method,
+    method: &'static str,
     divisions: Option<u32>,
     tolerance: Option<f64>,
     max: f64,
@@ -25,10 +25,15 @@ struct Row {
 
 impl From<Accuracy> for Row {
     fn from(accuracy: Accuracy) -> Self {
+        let (divisions, tolerance) = match accuracy.method {
+            Method::Simpson { divisions } => (Some(divisions), None),
+            Method::Exact { tolerance, .. } => (None, Some(tolerance)),
+            _ => (None, None),
+        };
         Self {
-            method: accuracy.method,
-            divisions: accuracy.divisions,
-            tolerance: accuracy.tolerance,
+            method: accuracy.method.name(),
+            divisions,
+            tolerance,
             max: accuracy.difference.max,
             worst: accuracy.difference.worst,
             p999: accuracy.difference.p999,
@@ -39,7 +44,7 @@ impl From<Accuracy> for Row {
 }
 
 pub fn run(arguments: &CompareArguments) -> Outcome {
-    let scene = Scene::from_file_with(&arguments.scene, |scene| {
+    let scene = Scene::from_file_with(&arguments.scene, |scene, _| {
         scene.image = arguments.size.unwrap_or(scene.image);
         Ok(())
     })?;
@@ -48,9 +53,9 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
     catch_interrupts();
     note("the truth is computed in float64 first; --size makes it quicker");
     let mut exact = scene.clone();
-    exact.integration.method = Method::Exact;
+    exact.integration.method = Method::default();
     let mut progress = Progress::new(arguments.quiet);
-    let mut reference = Renderer::new(&Device::select("reference")?)?;
+    let mut reference = Renderer::new(&Device::reference())?;
     let truth = reference.render_with_progress(&exact, &mut |share| progress.report(share))?;
     drop(progress);
     let time = Duration::from_secs_f64(arguments.seconds);

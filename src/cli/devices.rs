@@ -11,7 +11,7 @@ pub fn run(arguments: &DevicesArguments) -> Outcome {
         print_json(&devices)?;
     } else {
         print(&table(devices.as_slice()))?;
-        let best = devices.best();
+        let best = devices.best_or_reference();
         note(&format!("default: {best}: {}", reason(&best)));
     }
     if let Some(problem) = devices.problem() {

@@ -12,7 +12,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
-use energywave::{Device, Devices, Error};
+use energywave::{Device, Devices, Error, ErrorKind};
 
 use args::{Arguments, Command};
 
@@ -48,7 +48,7 @@ pub fn run() -> ExitCode {
         return ExitCode::SUCCESS;
     };
     let (message, code) = match failure {
-        Failure::Error(error) => (error.to_string(), exit_code(&error)),
+        Failure::Error(error) => (format!("{error}{}", hint(&error)), exit_code(&error)),
         Failure::Verification(message) => (message, 6),
         // The reader of a pipe may leave early; that is no failure of ours.
         Failure::Stdout(error) if error.kind() == io::ErrorKind::BrokenPipe => {
@@ -61,15 +61,24 @@ pub fn run() -> ExitCode {
     ExitCode::from(code)
 }
 
-/// The exit codes of README.md.
+/// The exit codes of `--help`.
 fn exit_code(error: &Error) -> u8 {
-    match error {
-        Error::Unsupported(_) | Error::OutputFormat(_) => 2,
-        Error::Scene(_) | Error::Input { .. } => 3,
-        Error::NoSuchDevice(_) => 4,
-        Error::Output { .. } => 7,
-        Error::Interrupted => 130,
+    match error.kind() {
+        ErrorKind::Unsupported | ErrorKind::OutputFormat => 2,
+        ErrorKind::Scene | ErrorKind::Input => 3,
+        ErrorKind::NoSuchDevice => 4,
+        ErrorKind::Output => 7,
+        ErrorKind::Interrupted => 130,
         _ => 5, // the device failed, or there is too little memory
+    }
+}
+
+/// How the command line does what the library advises.
+fn hint(error: &Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::SelfTest => " with --device, or insist on this one with --no-self-test",
+        ErrorKind::Device => " (--device chooses another device)",
+        _ => "",
     }
 }
 
@@ -80,7 +89,7 @@ fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
     let choice = flag.or(Some(variable.as_str()).filter(|word| !word.is_empty()));
     let chosen = match choice {
         Some(word) => devices.select_all(word)?,
-        None => vec![devices.best()],
+        None => vec![devices.best_or_reference()],
     };
     for device in &chosen {
         match devices.problem() {

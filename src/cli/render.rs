@@ -1,6 +1,6 @@
 //! `energywave render`: a scene file to an image file.
 
-use energywave::image::{Output, OutputFormat};
+use energywave::image::{ImageFile, ImageFormat};
 use energywave::{Error, Renderer, Scene};
 
 use super::args::RenderArguments;
@@ -8,12 +8,14 @@ use super::progress::{Progress, catch_interrupts, was_interrupted};
 use super::{Outcome, choose_devices};
 
 pub fn run(arguments: RenderArguments) -> Outcome {
-    OutputFormat::of(&arguments.output)?;
+    ImageFormat::of(&arguments.output)?;
     let overrides = &arguments.overrides;
-    let scene = Scene::from_file_with(&arguments.scene, |scene| overrides.apply(scene))?;
+    let scene = Scene::from_file_with(&arguments.scene, |scene, keys| {
+        overrides.apply(scene, keys)
+    })?;
     let devices = choose_devices(arguments.device.device.as_deref())?;
     catch_interrupts();
-    let output = Output::create(&arguments.output)?;
+    let output = ImageFile::create(&arguments.output)?;
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     let mut progress = Progress::new(arguments.quiet);
     let image = renderer.render_with_progress(&scene, &mut |share| progress.report(share))?;

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use energywave::scene::Method;
-use energywave::verify::{KnownRay, Row, built_in_rays, rays_from_file, verify};
-use energywave::{BuildOptions, Device, Renderer};
+use energywave::verify::{DIVISIONS, KnownRay, Row, built_in_rays, rays_from_file, verify};
+use energywave::{Device, Renderer, RendererOptions};
 
 use super::args::VerifyArguments;
 use super::{Failure, Outcome, choose_devices, note, print, print_json};
@@ -16,18 +16,19 @@ pub fn run(arguments: &VerifyArguments) -> Outcome {
     };
     let devices = choose_devices(arguments.device.device.as_deref())?;
     // It is the longer test itself, and shows every value.
-    let options = BuildOptions {
-        skips_self_test: true,
-        ..BuildOptions::default()
-    };
+    let mut options = RendererOptions::default();
+    options.skips_self_test = true;
     name_unknown_kinds(&rays);
     let mut rows = Vec::new();
     for device in &devices {
         let mut renderer = Renderer::with_options(device, &options)?;
         let name = name_among(device, &devices);
-        for method in [Method::Simpson, Method::Exact] {
-            let tolerance = arguments.tolerance;
-            rows.extend(verify(&mut renderer, &name, &rays, method, tolerance)?);
+        let methods = [
+            Method::simpson(DIVISIONS),
+            Method::exact(arguments.tolerance),
+        ];
+        for method in methods {
+            rows.extend(verify(&mut renderer, &name, &rays, method)?);
         }
     }
     if arguments.json {
@@ -49,7 +50,7 @@ fn name_among(device: &Device, devices: &[Device]) -> String {
 fn name_unknown_kinds(rays: &[KnownRay]) {
     let unknown: BTreeSet<&str> = rays
         .iter()
-        .filter(|ray| ray.scene().is_none())
+        .filter(|ray| ray.scene.is_none())
         .map(|ray| ray.kind.as_str())
         .collect();
     for kind in unknown {
@@ -67,7 +68,7 @@ fn table(rows: &[Row]) -> String {
             "{:>5} {:<21} {:<8} {:>14.8e} {:>14.8e} {:>9.1e} {:>8.0e}  {}{}\n",
             row.index,
             row.kind,
-            name(row.method),
+            row.method,
             row.expected,
             row.value,
             row.relative_error,
@@ -77,13 +78,6 @@ fn table(rows: &[Row]) -> String {
         );
     }
     text
-}
-
-fn name(method: Method) -> &'static str {
-    match method {
-        Method::Simpson => "simpson",
-        Method::Exact => "exact",
-    }
 }
 
 /// Fails if a row is beyond its limit, or if there is none: nothing checked is not verified.
@@ -103,7 +97,7 @@ fn judge(rows: &[Row]) -> Outcome {
         rows.len(),
         worst.index,
         worst.kind,
-        name(worst.method),
+        worst.method,
         worst.relative_error,
         worst.limit
     );

@@ -4,6 +4,7 @@ use super::RadianceImage;
 
 /// Relative differences of the pixels of an image from those of a reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Difference {
     /// Of the worst pixel.
     pub max: f64,
@@ -17,6 +18,7 @@ pub struct Difference {
 
 /// Compares the colour of two images of one size; a pixel's difference is that of its worst channel, relative to the
 /// reference's value there. Two zeros agree; NaN differs infinitely from everything. `None` if the sizes differ.
+#[must_use]
 pub fn compare(image: &RadianceImage, reference: &RadianceImage) -> Option<Difference> {
     if image.size() != reference.size() {
         return None;
@@ -64,7 +66,7 @@ fn relative(value: f32, reference: f32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::ImageSize;
+    use crate::image::ImageSize;
 
     #[test]
     fn the_worst_pixel_is_found_and_nan_is_no_match() {

@@ -10,21 +10,21 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use tempfile::NamedTempFile;
 
-use super::{DisplayImage, RadianceImage};
+use super::{Display, DisplayImage, ImageSize, RadianceImage};
 use crate::error::{Error, Result};
-use crate::scene::Display;
 
 /// A file format, chosen by the ending of a file's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OutputFormat {
+#[non_exhaustive]
+pub enum ImageFormat {
     /// 32-bit float, linear, before exposure and tone mapping.
     Exr,
     /// 8-bit sRGB, after both, dithered.
     Png,
 }
 
-impl OutputFormat {
-    /// The format that a file's ending names.
+impl ImageFormat {
+    /// Chooses the format by the ending of a file's name.
     ///
     /// # Errors
     /// [`Error::OutputFormat`] for any other ending.
@@ -40,25 +40,22 @@ impl OutputFormat {
 
 /// An output that is known to be writable before anything is computed.
 #[derive(Debug)]
-pub struct Output {
+pub struct ImageFile {
     path: PathBuf,
-    format: OutputFormat,
+    format: ImageFormat,
     file: NamedTempFile,
 }
 
-impl Output {
+impl ImageFile {
     /// Opens a temporary file beside `path`, through a symbolic link beside what it points to. It vanishes unless
-    /// [`Output::write`] succeeds.
+    /// [`ImageFile::write`] succeeds.
     ///
     /// # Errors
     /// [`Error::OutputFormat`] for an unknown ending, [`Error::Output`] if the folder is missing or not writable.
     pub fn create(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let format = OutputFormat::of(path)?;
-        let fail = |reason: String| Error::Output {
-            path: path.to_owned(),
-            reason,
-        };
+        let format = ImageFormat::of(path)?;
+        let fail = |reason: String| Error::output(path, reason);
         let names_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
         if path.is_dir() || names_folder {
             return Err(fail("it is a folder".to_owned()));
@@ -83,7 +80,9 @@ impl Output {
         }
         let file = builder
             .tempfile_in(folder)
-            .map_err(|error| fail(format!("folder {}: {}", folder.display(), error.kind())))?;
+            .map_err(|error| {
+                fail(format!("folder {}: {}", folder.display(), error.kind())).caused_by(error)
+            })?;
         Ok(Self {
             path: target,
             format,
@@ -97,8 +96,8 @@ impl Output {
     /// [`Error::Output`] if the disk is full or the file cannot be moved; nothing is left behind then.
     pub fn write(self, image: &RadianceImage, display: &Display) -> Result<()> {
         match self.format {
-            OutputFormat::Exr => self.finish(|writer| encode_exr(image, writer)),
-            OutputFormat::Png => {
+            ImageFormat::Exr => self.finish(|writer| encode_exr(image, writer)),
+            ImageFormat::Png => {
                 let picture = image.tone_map(display);
                 self.finish(|writer| encode_png(&picture, writer))
             }
@@ -118,17 +117,16 @@ impl Output {
         encode: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
     ) -> Result<()> {
         let path = self.path;
-        let fail = |reason: String| Error::Output {
-            path: path.clone(),
-            reason: format!("{reason}; nothing was written"),
+        let fail = |error: io::Error| {
+            Error::output(&path, format!("{error}; nothing was written")).caused_by(error)
         };
         let mut writer = BufWriter::new(self.file.as_file_mut());
-        encode(&mut writer).map_err(|error| fail(error.to_string()))?;
-        writer.flush().map_err(|error| fail(error.to_string()))?;
+        encode(&mut writer).map_err(fail)?;
+        writer.flush().map_err(fail)?;
         drop(writer);
         self.file
             .persist(&path)
-            .map_err(|error| fail(error.error.to_string()))?;
+            .map_err(|error| fail(error.error))?;
         Ok(())
     }
 }
@@ -180,7 +178,7 @@ impl RadianceImage {
     /// # Errors
     /// [`Error::OutputFormat`] for another ending, [`Error::Output`] if the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>, display: &Display) -> Result<()> {
-        Output::create(path)?.write(self, display)
+        ImageFile::create(path)?.write(self, display)
     }
 
     /// Reads the colour of a linear `.exr`.
@@ -189,14 +187,11 @@ impl RadianceImage {
     /// [`Error::Input`] if the file cannot be read or is no EXR image.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let fail = |error: ImageError| Error::Input {
-            path: path.to_owned(),
-            reason: reason(&error),
-        };
+        let fail = |error: ImageError| Error::input(path, reason(&error)).caused_by(error);
         let reader =
             image::ImageReader::open(path).map_err(|error| fail(ImageError::IoError(error)))?;
         let pixels = reader.decode().map_err(fail)?.into_rgba32f();
-        let size = crate::scene::ImageSize {
+        let size = ImageSize {
             width: pixels.width(),
             height: pixels.height(),
         };
@@ -214,8 +209,8 @@ impl DisplayImage {
     /// [`Error::OutputFormat`] for another ending, [`Error::Output`] if the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        let output = Output::create(path)?;
-        if output.format != OutputFormat::Png {
+        let output = ImageFile::create(path)?;
+        if output.format != ImageFormat::Png {
             return Err(Error::OutputFormat(path.to_owned()));
         }
         output.finish(|writer| encode_png(self, writer))

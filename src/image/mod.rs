@@ -2,16 +2,22 @@
 
 mod compare;
 mod depth;
+#[cfg(feature = "files")]
+mod depth_file;
+#[cfg(feature = "files")]
 mod file;
+mod size;
 mod tone_map;
 
 pub use compare::{Difference, compare};
 pub use depth::{DepthAlong, DepthImage};
-pub use file::{Output, OutputFormat};
+#[cfg(feature = "files")]
+pub use file::{ImageFile, ImageFormat};
+pub use size::ImageSize;
+pub use tone_map::{Display, ToneMap};
 
 use crate::error::{Error, Result};
 use crate::memory;
-use crate::scene::ImageSize;
 
 /// Linear radiance: RGBA in float32, alpha 1, by rows from the top left.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +27,7 @@ pub struct RadianceImage {
 }
 
 impl RadianceImage {
-    /// A black, transparent image.
+    /// Makes a black, transparent image.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`] if the host has too little memory for it.
@@ -50,11 +56,13 @@ impl RadianceImage {
     }
 
     /// Width and height in pixels.
+    #[must_use]
     pub fn size(&self) -> ImageSize {
         self.size
     }
 
     /// RGBA values, 4 for every pixel, by rows from the top left.
+    #[must_use]
     pub fn as_slice(&self) -> &[f32] {
         &self.data
     }
@@ -64,7 +72,8 @@ impl RadianceImage {
         &mut self.data
     }
 
-    /// Linear RGBA of a pixel; `None` outside the image.
+    /// Returns the linear RGBA of a pixel; `None` outside the image.
+    #[must_use]
     pub fn pixel(&self, column: u32, row: u32) -> Option<[f32; 4]> {
         if column >= self.size.width || row >= self.size.height {
             return None;
@@ -72,6 +81,18 @@ impl RadianceImage {
         let begin = 4 * (row as usize * self.size.width as usize + column as usize);
         self.data.get(begin..begin + 4)?.try_into().ok()
     }
+}
+
+/// Keeps an image from frame to frame; it is made anew if another size is wanted.
+pub(crate) fn kept_image(
+    image: &mut Option<RadianceImage>,
+    size: ImageSize,
+) -> Result<&mut RadianceImage> {
+    let kept = image.take().filter(|image| image.size() == size);
+    Ok(image.insert(match kept {
+        Some(image) => image,
+        None => RadianceImage::new(size)?,
+    }))
 }
 
 /// An 8-bit picture: sRGB-encoded RGB by rows from the top left.
@@ -83,11 +104,13 @@ pub struct DisplayImage {
 
 impl DisplayImage {
     /// Width and height in pixels.
+    #[must_use]
     pub fn size(&self) -> ImageSize {
         self.size
     }
 
     /// RGB bytes, 3 for every pixel.
+    #[must_use]
     pub fn as_slice(&self) -> &[u8] {
         &self.data
     }

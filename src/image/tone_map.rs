@@ -1,12 +1,47 @@
 //! Linear radiance to 8-bit sRGB: exposure, tone mapping, sRGB encoding, dither.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::{DisplayImage, RadianceImage};
-use crate::scene::{Display, ToneMap};
+
+/// How linear radiance becomes an 8-bit picture.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Display {
+    /// Exposure in stops: radiance times `2^exposure`.
+    pub exposure: f64,
+    /// The curve that brings radiance into `[0,1]`.
+    pub tone_map: ToneMap,
+}
+
+impl Default for Display {
+    fn default() -> Self {
+        Self {
+            exposure: 0.0,
+            tone_map: ToneMap::Exponential,
+        }
+    }
+}
+
+/// A tone-mapping curve, applied to each channel `L` of exposed radiance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum ToneMap {
+    /// `min(L, 1)`.
+    Clamp,
+    /// `1 - exp(-L)`.
+    Exponential,
+    /// `L / (1 + L)` (Reinhard et al. 2002).
+    Reinhard,
+    /// The rational fit to the ACES filmic curve by Narkowicz 2015.
+    Aces,
+}
 
 impl RadianceImage {
-    /// The picture for a screen. Dithered, so that wide glows do not band; black stays black and white white.
+    /// Makes the picture for a screen. Dithered, so that wide glows do not band; black stays black and white white.
+    #[must_use]
     pub fn tone_map(&self, display: &Display) -> DisplayImage {
         let gain = display.exposure.exp2() as f32;
         let width = self.size.width as usize;
@@ -29,7 +64,8 @@ impl RadianceImage {
 }
 
 impl ToneMap {
-    /// Exposed radiance of one channel to `[0,1]`; negative radiance is black.
+    /// Brings exposed radiance of one channel into `[0,1]`; negative radiance is black.
+    #[must_use]
     pub fn apply(self, radiance: f32) -> f32 {
         let l = radiance.max(0.0);
         let shown = match self {
@@ -64,7 +100,7 @@ fn gradient_noise(column: usize, row: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::ImageSize;
+    use crate::image::ImageSize;
 
     fn flat(radiance: f32) -> DisplayImage {
         let size = ImageSize {

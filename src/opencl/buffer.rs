@@ -2,19 +2,17 @@
 
 use std::ffi::c_void;
 use std::ptr;
-use std::sync::Arc;
 
 use bytemuck::Pod;
 use opencl3::event::Event;
 use opencl3::memory::{
-    Buffer, CL_MAP_READ, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE,
+    Buffer, CL_MAP_READ, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_WRITE,
     CL_MEM_USE_HOST_PTR, ClMem,
 };
 use opencl3::types::{CL_FALSE, CL_TRUE, cl_mem};
 
 use super::Compute;
-use super::copies::Copies;
-use super::failure::{failed, refused};
+use super::failure::{failed, fault, refused};
 use super::handle::Handle;
 use crate::error::{Error, Result};
 
@@ -93,7 +91,7 @@ impl<T: Pod> DeviceBuffer<T> {
         })
     }
 
-    fn with_flags(compute: &Compute, what: &str, len: usize, flags: u64) -> Result<Self> {
+    pub(super) fn with_flags(compute: &Compute, what: &str, len: usize, flags: u64) -> Result<Self> {
         let device = &compute.device;
         let len = len.max(1);
         let bytes = (len * size_of::<T>()) as u64;
@@ -184,12 +182,8 @@ impl<T: Pod> DeviceBuffer<T> {
             return Ok(());
         }
         if target.len() < (rows - 1) * stride + row || stride < row {
-            return Err(Error::Device {
-                device: compute.device.name.clone(),
-                call,
-                code: format!("{} values for {rows} rows {stride} apart", target.len()),
-                advice: "a fault of this program: please report it",
-            });
+            let what = format!("{} values for {rows} rows {stride} apart", target.len());
+            return Err(fault(&compute.device.name, call, what));
         }
         let bytes = size_of::<V>();
         let (origin, region) = ([0_usize; 3], [row * bytes, rows, 1]);
@@ -262,85 +256,7 @@ impl<T: Pod> DeviceBuffer<T> {
         if len <= self.len {
             return Ok(());
         }
-        Err(Error::Device {
-            device: compute.device.name.clone(),
-            call,
-            code: format!("{len} elements, the buffer has {}", self.len),
-            advice: "a fault of this program: please report it",
-        })
-    }
-}
-
-/// A read-only list on the device that is uploaded only when it changed, and grows when it must.
-#[derive(Debug)]
-pub struct Uploaded<T> {
-    what: &'static str,
-    buffer: Option<DeviceBuffer<T>>,
-    /// What the device has, or is about to have.
-    contents: Arc<Vec<T>>,
-    copies: Copies<Arc<Vec<T>>>,
-    /// Whether the device has `contents`, or a copy of them is under way.
-    is_valid: bool,
-}
-
-impl<T: Pod + PartialEq> Uploaded<T> {
-    /// An empty list; `what` names the contents in errors.
-    pub fn new(what: &'static str) -> Self {
-        Self {
-            what,
-            buffer: None,
-            contents: Arc::default(),
-            copies: Copies::new(),
-            is_valid: false,
-        }
-    }
-
-    /// Makes the device's list equal to `data`, before the next command of the queue begins. It does not wait for that
-    /// (a wait costs a frame 45 us on PoCL 3.1): [`Uploaded::settle`] tells whether it went well.
-    ///
-    /// # Errors
-    /// As [`DeviceBuffer::new`] and [`DeviceBuffer::write`].
-    pub fn upload(&mut self, compute: &Compute, data: &[T]) -> Result<()> {
-        self.is_valid &= self.copies.reap();
-        if self.is_valid && *self.contents == data {
-            return Ok(());
-        }
-        self.is_valid = false;
-        match Arc::get_mut(&mut self.contents) {
-            Some(contents) => {
-                contents.clear();
-                contents.extend_from_slice(data);
-            }
-            None => self.contents = Arc::new(data.to_vec()), // the old ones are still being copied
-        }
-        let buffer = match self.buffer.take() {
-            Some(buffer) if buffer.len() >= data.len() => buffer,
-            _ => DeviceBuffer::with_flags(compute, self.what, data.len(), CL_MEM_READ_ONLY)?,
-        };
-        let buffer = self.buffer.insert(buffer);
-        if !data.is_empty() {
-            // SAFETY: the contents are neither changed nor freed while `copies` holds them.
-            let event = unsafe { buffer.begin_write(compute, &self.contents) }?;
-            self.copies.keep(event, Arc::clone(&self.contents));
-        }
-        self.is_valid = true;
-        Ok(())
-    }
-
-    /// Waits for copies under way.
-    ///
-    /// # Errors
-    /// [`Error::Device`] if a copy failed; the next upload repeats it.
-    pub fn settle(&mut self, compute: &Compute) -> Result<()> {
-        let outcome = self.copies.wait(compute);
-        self.is_valid &= outcome.is_ok();
-        outcome
-    }
-
-    /// The buffer's handle; null before the first upload.
-    pub(super) fn handle(&self) -> cl_mem {
-        self.buffer
-            .as_ref()
-            .map_or(ptr::null_mut(), DeviceBuffer::handle)
+        let what = format!("{len} elements, the buffer has {}", self.len);
+        Err(fault(&compute.device.name, call, what))
     }
 }

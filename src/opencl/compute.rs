@@ -51,7 +51,7 @@ impl Compute {
     }
 
     /// Another queue on the same device in the same context.
-    pub(super) fn sibling(&self) -> Result<Self> {
+    pub(crate) fn sibling(&self) -> Result<Self> {
         let context = self.context.get();
         // SAFETY: the context is alive, and the reference taken is given back by the handle.
         let context = unsafe {

@@ -47,7 +47,7 @@ impl<T> Copies<T> {
 }
 
 /// Why nothing is known of what a command did.
-pub(super) enum Unknown {
+pub(crate) enum Unknown {
     /// It failed.
     Command,
     /// The driver does not answer.
@@ -55,7 +55,7 @@ pub(super) enum Unknown {
 }
 
 /// Whether a command is over.
-pub(super) fn state(event: &Event) -> std::result::Result<bool, Unknown> {
+pub(crate) fn state(event: &Event) -> std::result::Result<bool, Unknown> {
     match event.command_execution_status() {
         Ok(status) if status.0 < CL_COMPLETE => Err(Unknown::Command),
         Ok(status) => Ok(status.0 == CL_COMPLETE),

@@ -8,10 +8,35 @@ use opencl3::device::{
 use opencl3::error_codes::{ClError, DLOPEN_FUNCTION_NOT_AVAILABLE, DLOPEN_RUNTIME_LOAD_FAILED};
 use opencl3::platform::{Platform, get_platforms};
 use opencl3::types::cl_device_id;
-
-use crate::device::DeviceType;
+use serde::Serialize;
 
 const CL_PLATFORM_NOT_FOUND_KHR: i32 = -1001;
+
+/// Kind of a device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum DeviceType {
+    /// Graphics processor.
+    Gpu,
+    /// Processor, through OpenCL.
+    Cpu,
+    /// Any other OpenCL device.
+    Accelerator,
+    /// The built-in float64 reference, without OpenCL.
+    Reference,
+}
+
+impl std::fmt::Display for DeviceType {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Gpu => "gpu",
+            Self::Cpu => "cpu",
+            Self::Accelerator => "accelerator",
+            Self::Reference => "reference",
+        })
+    }
+}
 
 /// Result of a search for OpenCL devices.
 #[derive(Debug, Default)]

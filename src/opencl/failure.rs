@@ -14,6 +14,18 @@ pub(super) fn failed<'a>(
         call,
         code: code_name(code),
         advice: advice(code),
+        source: Some(ClError(code).into()),
+    }
+}
+
+/// A call that would have been wrong and was not made.
+pub(super) fn fault(device: &str, call: &'static str, what: String) -> Error {
+    Error::Device {
+        device: device.to_owned(),
+        call,
+        code: what,
+        advice: "a fault of this library: please report it",
+        source: None,
     }
 }
 
@@ -53,6 +65,6 @@ fn advice(code: i32) -> &'static str {
             "the driver built no usable program: is its cache folder writable (PoCL: POCL_CACHE_DIR)?"
         }
         codes::CL_DEVICE_NOT_AVAILABLE => "the device is in use or switched off",
-        _ => "update the device's driver, or choose another device with --device",
+        _ => "update the device's driver, or choose another device",
     }
 }

@@ -17,18 +17,18 @@ use opencl3::memory::{
 };
 use opencl3::types::{cl_command_queue, cl_context, cl_event, cl_mem};
 
+use super::Compute;
+use super::copies::state;
 use super::discover::device_of;
 use super::failure::failed;
+use super::film::{Film, halves_of};
 use super::handle::Handle;
 use super::host_image::ImageInPlace;
-use super::launch::Output;
-use super::{BuildOptions, Compute, OpenClRenderer};
 use crate::error::{Error, Result};
-use crate::renderer::{Renderer, RendererBackend};
-use crate::scene::{ImageSize, Scene};
 
 /// Memory of a host's that a frame is drawn into: linear radiance, RGBA by rows from the top left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum HostTarget {
     /// A buffer of at least `16 * width * height` bytes, float32, made with `CL_MEM_READ_WRITE`. A place in a larger buffer
     /// is a sub-buffer (`clCreateSubBuffer`).
@@ -50,75 +50,10 @@ impl From<&Image> for HostTarget {
     }
 }
 
-impl Renderer {
-    /// A renderer on a host's context, for the device of the host's queue: draws into the host's memory by
-    /// [`Renderer::enqueue`], and into its own as any other. It keeps a reference to both.
-    ///
-    /// # Errors
-    /// [`Error::Host`] if the queue belongs to another context, or its device cannot render; [`Error::Device`].
-    pub fn on_host(context: &Context, queue: &CommandQueue) -> Result<Self> {
-        // SAFETY: the borrows keep both alive.
-        unsafe { Self::on_raw_host(context.get(), queue.get(), &BuildOptions::default()) }
-    }
-
-    /// Like [`Renderer::on_host`], for handles as C has them.
-    ///
-    /// # Safety
-    /// Both are valid handles, which the caller holds a reference to.
-    ///
-    /// # Errors
-    /// As [`Renderer::on_host`].
-    pub unsafe fn on_raw_host(
-        context: cl_context,
-        queue: cl_command_queue,
-        options: &BuildOptions,
-    ) -> Result<Self> {
-        // SAFETY: the caller's promise.
-        let renderer = unsafe { OpenClRenderer::in_context(context, queue, options) }?;
-        Ok(Self {
-            backend: RendererBackend::OpenCl(Box::new(renderer)),
-        })
-    }
-
-    /// Enqueues a frame that is drawn into a host's buffer or image, and gives the event of its end, a marker on the
-    /// host's queue. The frame begins after `wait_list` and what is on the host's queue before it; what comes after it on
-    /// an in-order queue waits for it.
-    ///
-    /// The host's queue is flushed, never finished, and nothing here waits for it (but for the compiler, the first time
-    /// that a scene needs other kernels): what goes wrong on the device later shows at the event, and at the next call.
-    /// Dropping the renderer waits until the device has read what was uploaded.
-    ///
-    /// # Safety
-    /// Target and events are valid handles, which the caller holds a reference to. Until the event is over, nothing else
-    /// uses the target.
-    ///
-    /// # Errors
-    /// As [`Renderer::render`]; [`Error::Host`] if the renderer was made without a host, or target or events do not fit:
-    /// all that is checked before anything is enqueued.
-    pub unsafe fn enqueue(
-        &mut self,
-        scene: &Scene,
-        target: HostTarget,
-        wait_list: &[cl_event],
-    ) -> Result<Event> {
-        scene.validate()?;
-        match &mut self.backend {
-            // SAFETY: the caller's promise.
-            RendererBackend::OpenCl(renderer) => unsafe {
-                renderer.enqueue(scene, target, wait_list)
-            },
-            RendererBackend::Several(_) | RendererBackend::Reference { .. } => {
-                Err(unfit("queue", NO_HOST))
-            }
-        }
-    }
-}
-
 const MARKER: &str = "clEnqueueMarkerWithWaitList";
-const NO_HOST: &str = "this renderer was made without one; make it with Renderer::on_host";
 
 /// Something of the host's that does not fit.
-fn unfit(object: &'static str, reason: impl Display) -> Error {
+pub(crate) fn unfit(object: &'static str, reason: impl Display) -> Error {
     Error::Host {
         object,
         reason: reason.to_string(),
@@ -133,16 +68,32 @@ fn asked<T>(object: &'static str, answer: std::result::Result<T, ClError>) -> Re
     })
 }
 
-impl OpenClRenderer {
-    /// A renderer in the host's context, for the device of the host's queue. Both are retained.
+/// A host's queue, tied to our own.
+#[derive(Debug)]
+pub(crate) struct HostLink {
+    queue: Handle<CommandQueue>,
+    /// Which may be a part of a device.
+    _device: Handle<SubDevice>,
+    /// Commands that nobody waited for: PoCL 3.1 aborts where an event fails that was let go before it was over.
+    held: Vec<Handle<Event>>,
+}
+
+/// A frame for a host that has begun.
+#[derive(Debug)]
+pub(crate) struct HostFrame {
+    memory: Handle<Image>,
+    in_place: Option<ImageInPlace>,
+}
+
+impl HostLink {
+    /// Takes the host's context and the device of its queue. Both are retained.
     ///
     /// # Safety
     /// Both are alive.
-    pub(crate) unsafe fn in_context(
+    pub(crate) unsafe fn open(
         context: cl_context,
         queue: cl_command_queue,
-        options: &BuildOptions,
-    ) -> Result<Self> {
+    ) -> Result<(Compute, Self)> {
         if context.is_null() || queue.is_null() {
             return Err(unfit("context or queue", "null"));
         }
@@ -164,49 +115,65 @@ impl OpenClRenderer {
         // SAFETY: the queue has the device.
         unsafe { asked("queue", retain_device(id).map_err(ClError)) }?;
         let retained = Handle::new(SubDevice::new(id));
-        let mut renderer = Self::with_compute(Compute::in_context(context, &device)?, options)?;
-        renderer.host_queue = Some(queue);
-        renderer.host_device = Some(retained);
-        Ok(renderer)
+        let link = Self {
+            queue,
+            _device: retained,
+            held: Vec::new(),
+        };
+        Ok((Compute::in_context(context, &device)?, link))
     }
 
-    /// Enqueues a frame of a valid scene: it begins after `wait_list` and after the commands before it on the host's queue;
-    /// commands after it wait for it, on an in-order queue. Nothing here waits.
+    /// Begins a frame of this size: what follows on our queue waits for `wait_list` and for the commands before it on the
+    /// host's queue, and the film goes to the target. Nothing here waits.
     ///
     /// # Safety
-    /// As [`crate::Renderer::enqueue`].
-    pub(crate) unsafe fn enqueue(
+    /// Target and events are alive, and nothing else uses the target until the frame's event is over.
+    pub(crate) unsafe fn begin(
         &mut self,
-        scene: &Scene,
+        compute: &Compute,
+        film: &mut Film,
         target: HostTarget,
+        size: (u32, u32),
         wait_list: &[cl_event],
-    ) -> Result<Event> {
-        self.host_queue()?;
+    ) -> Result<HostFrame> {
         // SAFETY: the caller's promise.
-        let memory = unsafe { self.checked(target, scene.image) }?;
+        let (memory, has_halves) = unsafe { checked(compute, target, size) }?;
         // SAFETY: the same.
-        unsafe { self.check_events(wait_list) }?;
-        self.begin_after(wait_list)?;
+        unsafe { check_events(compute, wait_list) }?;
+        self.held.retain(|event| matches!(state(event), Ok(false)));
+        self.begin_after(compute, wait_list)?;
         let in_place = match target {
             HostTarget::Image(_) => {
                 let held = &mut self.held;
-                ImageInPlace::map(&self.compute, &memory, scene.image, held)?
+                ImageInPlace::map(compute, &memory, has_halves, size, held)?
             }
             HostTarget::Buffer(_) => None,
         };
-        let output = match (target, &in_place) {
-            (HostTarget::Buffer(buffer), _) => Output::Buffer(buffer),
-            (HostTarget::Image(_), Some(image)) => image.output(),
-            (HostTarget::Image(image), None) => Output::Image(image, has_halves(&memory)),
-        };
-        let launched = self.launch_frame(scene, output);
-        let unmapped = match in_place {
-            Some(image) => image.unmap(&self.compute, &memory, &mut self.held),
+        match (target, &in_place) {
+            (HostTarget::Buffer(buffer), _) => film.aim_at_buffer(buffer),
+            (HostTarget::Image(_), Some(image)) => image.aim(film),
+            (HostTarget::Image(image), None) => film.aim_at_image(image, has_halves),
+        }
+        film.begin_at(0);
+        Ok(HostFrame { memory, in_place })
+    }
+
+    /// Ends a frame: what follows on the host's queue waits for it. Gives the event of that, a marker on the host's queue.
+    pub(crate) fn end(
+        &mut self,
+        compute: &Compute,
+        film: &mut Film,
+        frame: HostFrame,
+        drawn: Result<()>,
+    ) -> Result<Event> {
+        film.aim_at_own();
+        let unmapped = match frame.in_place {
+            Some(image) => image.unmap(compute, &frame.memory, &mut self.held),
             None => Ok(()),
         };
         // Also what was launched before a failure draws into the target: what follows on the host's queue waits for it.
-        let ended = self.end();
-        match launched.and(unmapped) {
+        let ended = self.end_before(compute);
+        match drawn.and(unmapped) {
             Ok(()) => ended,
             Err(error) => {
                 self.held.extend(ended.map(Handle::new));
@@ -215,18 +182,10 @@ impl OpenClRenderer {
         }
     }
 
-    /// The host's queue; an error for a renderer of its own.
-    fn host_queue(&self) -> Result<&CommandQueue> {
-        match &self.host_queue {
-            Some(queue) => Ok(queue),
-            None => Err(unfit("queue", NO_HOST)),
-        }
-    }
-
     /// What follows on our queue waits for what is on the host's, and for the list.
-    fn begin_after(&mut self, wait_list: &[cl_event]) -> Result<()> {
-        let name = &self.compute.device.name;
-        let host = self.host_queue()?;
+    fn begin_after(&mut self, compute: &Compute, wait_list: &[cl_event]) -> Result<()> {
+        let name = &compute.device.name;
+        let host = &self.queue;
         // With a list it would wait for that alone, on a queue out of order.
         // SAFETY: nothing is waited for but what is on the queue.
         let begin = unsafe { host.enqueue_marker_with_wait_list(&[]) }
@@ -237,7 +196,7 @@ impl OpenClRenderer {
         let events = [&[begin.get()], wait_list].concat();
         // No barrier: PoCL 3.1 never lets go of a queue's last one.
         // SAFETY: the events are alive, by the caller's promise.
-        let all = unsafe { self.compute.queue.enqueue_marker_with_wait_list(&events) }
+        let all = unsafe { compute.queue.enqueue_marker_with_wait_list(&events) }
             .map(Handle::new)
             .map_err(failed(name, MARKER))?;
         self.held.extend([begin, all]);
@@ -245,15 +204,15 @@ impl OpenClRenderer {
     }
 
     /// What follows on the host's queue waits for ours: the event of that.
-    fn end(&mut self) -> Result<Event> {
-        let name = &self.compute.device.name;
-        let queue = &self.compute.queue;
+    fn end_before(&mut self, compute: &Compute) -> Result<Event> {
+        let name = &compute.device.name;
+        let queue = &compute.queue;
         // SAFETY: nothing is waited for but what is on the queue.
         let last = unsafe { queue.enqueue_marker_with_wait_list(&[]) }
             .map(Handle::new)
             .map_err(failed(name, MARKER))?;
         queue.flush().map_err(failed(name, "clFlush"))?;
-        let host = self.host_queue()?;
+        let host = &self.queue;
         // SAFETY: the event is alive.
         let end = unsafe { host.enqueue_marker_with_wait_list(&[last.get()]) }
             .map_err(failed(name, MARKER))?;
@@ -262,72 +221,76 @@ impl OpenClRenderer {
         self.held.push(last);
         Ok(end)
     }
-
-    /// The target, retained, if a frame of this size can go there.
-    ///
-    /// # Safety
-    /// The memory object is alive.
-    unsafe fn checked(&self, target: HostTarget, size: ImageSize) -> Result<Handle<Image>> {
-        let (object, handle, wanted) = match target {
-            HostTarget::Buffer(buffer) => ("buffer", buffer, CL_MEM_OBJECT_BUFFER),
-            HostTarget::Image(image) => ("image", image, CL_MEM_OBJECT_IMAGE2D),
-        };
-        if handle.is_null() {
-            return Err(unfit(object, "null"));
-        }
-        // SAFETY: the caller's promise; the reference is given back by the handle. Of `Image` only what all memory objects
-        // have in common is used before the type is known.
-        let memory = unsafe {
-            asked(object, retain_mem_object(handle).map_err(ClError))?;
-            Handle::new(Image::new(handle))
-        };
-        if asked(object, memory.mem_type())? != wanted {
-            return Err(unfit(object, "it is another kind of memory object"));
-        }
-        if asked(object, memory.context())? != self.compute.context.get() {
-            return Err(unfit(object, "it belongs to another context"));
-        }
-        let flags = asked(object, memory.flags())?;
-        if flags & CL_MEM_READ_ONLY != 0 {
-            let reason = "kernels may not write it (CL_MEM_READ_ONLY); use CL_MEM_READ_WRITE";
-            return Err(unfit(object, reason));
-        }
-        match target {
-            HostTarget::Buffer(_) => check_buffer(&memory, flags, size),
-            HostTarget::Image(_) => check_image(&memory, size),
-        }?;
-        Ok(memory)
-    }
-
-    /// # Safety
-    /// The events are alive.
-    unsafe fn check_events(&self, wait_list: &[cl_event]) -> Result<()> {
-        for event in wait_list {
-            if event.is_null() {
-                return Err(unfit("wait list", "it has a null event"));
-            }
-            // SAFETY: the caller's promise; the handle gives the reference back.
-            let event = unsafe {
-                asked("wait list", retain_event(*event).map_err(ClError))?;
-                Handle::new(Event::new(*event))
-            };
-            let fault = if asked("wait list", event.context())? != self.compute.context.get() {
-                "an event of it belongs to another context"
-            } else if asked("wait list", event.command_execution_status())?.0 < CL_COMPLETE {
-                "an event of it has failed"
-            } else {
-                continue;
-            };
-            return Err(unfit("wait list", fault));
-        }
-        Ok(())
-    }
 }
 
-fn check_buffer(buffer: &Image, flags: u64, size: ImageSize) -> Result<()> {
-    let (bytes, needed) = (asked("buffer", ClMem::size(buffer))?, 16 * size.pixels());
+/// The target, retained, if a frame of this size can go there, and whether it has half floats.
+///
+/// # Safety
+/// The memory object is alive.
+unsafe fn checked(
+    compute: &Compute,
+    target: HostTarget,
+    size: (u32, u32),
+) -> Result<(Handle<Image>, bool)> {
+    let (object, handle, wanted) = match target {
+        HostTarget::Buffer(buffer) => ("buffer", buffer, CL_MEM_OBJECT_BUFFER),
+        HostTarget::Image(image) => ("image", image, CL_MEM_OBJECT_IMAGE2D),
+    };
+    if handle.is_null() {
+        return Err(unfit(object, "null"));
+    }
+    // SAFETY: the caller's promise; the reference is given back by the handle. Of `Image` only what all memory objects
+    // have in common is used before the type is known.
+    let memory = unsafe {
+        asked(object, retain_mem_object(handle).map_err(ClError))?;
+        Handle::new(Image::new(handle))
+    };
+    if asked(object, memory.mem_type())? != wanted {
+        return Err(unfit(object, "it is another kind of memory object"));
+    }
+    if asked(object, memory.context())? != compute.context.get() {
+        return Err(unfit(object, "it belongs to another context"));
+    }
+    let flags = asked(object, memory.flags())?;
+    if flags & CL_MEM_READ_ONLY != 0 {
+        let reason = "kernels may not write it (CL_MEM_READ_ONLY); use CL_MEM_READ_WRITE";
+        return Err(unfit(object, reason));
+    }
+    let has_halves = match target {
+        HostTarget::Buffer(_) => check_buffer(&memory, flags, size).map(|()| false),
+        HostTarget::Image(_) => check_image(&memory, size),
+    }?;
+    Ok((memory, has_halves))
+}
+
+/// # Safety
+/// The events are alive.
+unsafe fn check_events(compute: &Compute, wait_list: &[cl_event]) -> Result<()> {
+    for event in wait_list {
+        if event.is_null() {
+            return Err(unfit("wait list", "it has a null event"));
+        }
+        // SAFETY: the caller's promise; the handle gives the reference back.
+        let event = unsafe {
+            asked("wait list", retain_event(*event).map_err(ClError))?;
+            Handle::new(Event::new(*event))
+        };
+        let fault = if asked("wait list", event.context())? != compute.context.get() {
+            "an event of it belongs to another context"
+        } else if asked("wait list", event.command_execution_status())?.0 < CL_COMPLETE {
+            "an event of it has failed"
+        } else {
+            continue;
+        };
+        return Err(unfit("wait list", fault));
+    }
+    Ok(())
+}
+
+fn check_buffer(buffer: &Image, flags: u64, (width, height): (u32, u32)) -> Result<()> {
+    let bytes = asked("buffer", ClMem::size(buffer))?;
+    let needed = 16 * width as usize * height as usize;
     if bytes < needed {
-        let (width, height) = (size.width, size.height);
         let reason = format!("{bytes} bytes; {width}x{height} float32 RGBA pixels need {needed}");
         return Err(unfit("buffer", reason));
     }
@@ -344,20 +307,14 @@ fn check_buffer(buffer: &Image, flags: u64, size: ImageSize) -> Result<()> {
     Ok(())
 }
 
-fn has_halves(image: &Image) -> bool {
-    let formats = image.format().unwrap_or_default();
-    formats
-        .iter()
-        .any(|f| f.image_channel_data_type == CL_HALF_FLOAT)
-}
-
-fn check_image(image: &Image, size: ImageSize) -> Result<()> {
+/// Whether the image has half floats.
+fn check_image(image: &Image, size: (u32, u32)) -> Result<bool> {
     let width = asked("image", image.width())?;
     let height = asked("image", image.height())?;
-    if (width, height) != (size.width as usize, size.height as usize) {
+    if (width, height) != (size.0 as usize, size.1 as usize) {
         let reason = format!(
             "{width}x{height} pixels, the scene has {}x{}",
-            size.width, size.height
+            size.0, size.1
         );
         return Err(unfit("image", reason));
     }
@@ -365,14 +322,15 @@ fn check_image(image: &Image, size: ImageSize) -> Result<()> {
     let [format] = format.as_slice() else {
         return Err(unfit("image", "OpenCL does not tell its format"));
     };
-    let is_float = [CL_FLOAT, CL_HALF_FLOAT].contains(&format.image_channel_data_type);
-    if format.image_channel_order != CL_RGBA || !is_float {
+    let (order, kind) = (
+        format.image_channel_order,
+        format.image_channel_data_type,
+    );
+    halves_of(order, kind).ok_or_else(|| {
         let reason = format!(
-            "channels of order {:#x} and type {:#x}; they must be CL_RGBA ({CL_RGBA:#x}) of CL_FLOAT ({CL_FLOAT:#x}) or \
-             CL_HALF_FLOAT ({CL_HALF_FLOAT:#x})",
-            format.image_channel_order, format.image_channel_data_type
+            "channels of order {order:#x} and type {kind:#x}; they must be CL_RGBA ({CL_RGBA:#x}) of CL_FLOAT \
+             ({CL_FLOAT:#x}) or CL_HALF_FLOAT ({CL_HALF_FLOAT:#x})"
         );
-        return Err(unfit("image", reason));
-    }
-    Ok(())
+        unfit("image", reason)
+    })
 }

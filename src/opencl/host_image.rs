@@ -7,20 +7,20 @@ use std::ptr;
 
 use opencl3::event::Event;
 use opencl3::memory::{
-    Buffer, CL_HALF_FLOAT, CL_MAP_READ, CL_MAP_WRITE_INVALIDATE_REGION, CL_MEM_HOST_NO_ACCESS,
-    CL_MEM_HOST_READ_ONLY, CL_MEM_READ_WRITE, CL_MEM_USE_HOST_PTR, ClMem, Image, cl_image_format,
+    Buffer, CL_MAP_READ, CL_MEM_HOST_NO_ACCESS, CL_MEM_HOST_READ_ONLY, CL_MEM_READ_WRITE,
+    CL_MEM_USE_HOST_PTR, ClMem, Image,
 };
-use opencl3::types::{CL_FALSE, cl_mem};
+use opencl3::types::CL_FALSE;
 
-use super::Compute;
 use super::failure::failed;
+use super::film::Film;
 use super::handle::Handle;
-use super::launch::Output;
-use crate::device::DeviceType;
+use super::image::{enqueue_map, enqueue_unmap};
+use super::{Compute, DeviceType};
 use crate::error::Result;
-use crate::scene::ImageSize;
 
 /// A mapped image and a buffer in its place.
+#[derive(Debug)]
 pub(super) struct ImageInPlace {
     pointer: *mut c_void,
     buffer: Handle<Buffer<u8>>,
@@ -32,16 +32,15 @@ impl ImageInPlace {
     pub(super) fn map(
         compute: &Compute,
         image: &Image,
-        size: ImageSize,
+        has_halves: bool,
+        size: (u32, u32),
         events: &mut Vec<Handle<Event>>,
     ) -> Result<Option<Self>> {
         let device = &compute.device;
         let is_here = device.device_type == DeviceType::Cpu && device.shares_host_memory;
-        let formats = image.format().unwrap_or_default();
-        let is_half = |f: &cl_image_format| f.image_channel_data_type == CL_HALF_FLOAT;
-        let has_halves = formats.iter().all(is_half);
         let pixel = 4 * if has_halves { 2 } else { 4 };
-        let row = pixel * size.width as usize;
+        let (width, height) = (size.0 as usize, size.1 as usize);
+        let row = pixel * width;
         let is_dense = image.row_pitch().is_ok_and(|pitch| pitch == row);
         let unmappable = CL_MEM_HOST_NO_ACCESS | CL_MEM_HOST_READ_ONLY;
         let may_map = image.flags().is_ok_and(|flags| flags & unmappable == 0);
@@ -53,7 +52,7 @@ impl ImageInPlace {
             // SAFETY: the memory is mapped for as long as the buffer is used.
             true => unsafe {
                 let flags = CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR;
-                Buffer::create(&compute.context, flags, pixel * size.pixels(), pointer)
+                Buffer::create(&compute.context, flags, pixel * width * height, pointer)
             }
             .ok(),
             false => None,
@@ -68,10 +67,11 @@ impl ImageInPlace {
         }
     }
 
-    pub(super) fn output(&self) -> Output {
+    /// Lets light go there.
+    pub(super) fn aim(&self, film: &mut Film) {
         match self.has_halves {
-            true => Output::Halves(self.buffer.get()),
-            false => Output::Buffer(self.buffer.get()),
+            true => film.aim_at_halves(self.buffer.get()),
+            false => film.aim_at_buffer(self.buffer.get()),
         }
     }
 
@@ -101,47 +101,4 @@ impl ImageInPlace {
         events.push(event);
         enqueue_unmap(compute, self.buffer.get(), pointer, events)
     }
-}
-
-/// Where the image's first row is, and the bytes from there to the second.
-fn enqueue_map(
-    compute: &Compute,
-    image: &Image,
-    size: ImageSize,
-    events: &mut Vec<Handle<Event>>,
-) -> Result<(*mut c_void, usize)> {
-    let (mut pointer, mut pitch) = (ptr::null_mut(), 0);
-    let (origin, region) = ([0; 3], [size.width as usize, size.height as usize, 1]);
-    // SAFETY: the region is the whole image; the pointer is used by commands that come after this one.
-    let event = unsafe {
-        compute.queue.enqueue_map_image(
-            image,
-            CL_FALSE,
-            CL_MAP_WRITE_INVALIDATE_REGION,
-            origin.as_ptr(),
-            region.as_ptr(),
-            &raw mut pitch,
-            ptr::null_mut(),
-            &mut pointer,
-            &[],
-        )
-    }
-    .map(Handle::new)
-    .map_err(failed(&compute.device.name, "clEnqueueMapImage"))?;
-    events.push(event);
-    Ok((pointer, pitch))
-}
-
-fn enqueue_unmap(
-    compute: &Compute,
-    memory: cl_mem,
-    pointer: *mut c_void,
-    events: &mut Vec<Handle<Event>>,
-) -> Result<()> {
-    // SAFETY: the memory is mapped there, and nobody uses the pointer after this.
-    let event = unsafe { compute.queue.enqueue_unmap_mem_object(memory, pointer, &[]) }
-        .map(Handle::new)
-        .map_err(failed(&compute.device.name, "clEnqueueUnmapMemObject"))?;
-    events.push(event);
-    Ok(())
 }

@@ -1,103 +1,104 @@
-//! The kernels' source, embedded in the program; includes are resolved here, so nothing is read from disk at run time.
+//! OpenCL C of several files as one text: includes are resolved here, so nothing is read from disk at run time.
 
 use std::collections::HashSet;
 
+/// A file: its path from `cl/`, and its text.
+pub type SourceFile<'a> = (&'a str, &'a str);
+
 macro_rules! embed {
-    ($($name:literal),* $(,)?) => {
-        /// Every file of `cl/`: its name from there, and its text.
-        pub const FILES: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../cl/", $name)))),*];
+    ($($name:expr),* $(,)?) => {
+        &[$(($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/cl/", $name)))),*]
     };
 }
+pub(crate) use embed;
 
-embed!(
-    "types.h",
+/// What all engines share: arithmetic, rays, and the film.
+pub const SHARED: &[SourceFile<'static>] = embed!(
+    "check_size.h",
     "lanes.h",
     "fine.h",
     "roots.h",
     "elementary.h",
-    "decay.h",
-    "ray.h",
-    "sources.h",
-    "field/profile.h",
-    "field/quadratic.h",
-    "field/sphere.h",
-    "field/cylinder.h",
-    "field/beam.h",
-    "field/torus.h",
-    "field/cubic.h",
-    "field/spline.h",
-    "field/curve.h",
-    "integrate/quadrature.h",
-    "integrate/simpson.h",
-    "integrate/closed_form.h",
-    "integrate/closed_form_square.h",
-    "integrate/stretch.h",
-    "integrate/closed.h",
-    "integrate/beam.h",
-    "integrate/panel.h",
-    "integrate/exact.h",
-    "peaks/torus.h",
-    "peaks/curve.h",
-    "peaks/curve_panels.h",
-    "radiance.h",
-    "clearance.h",
-    "store.h",
-    "tile.h",
-    "hiding.h",
-    "smoothness.h",
-    "settle.h",
-    "render.cl",
-    "tiles.cl",
-    "trace.cl",
+    "view.h",
+    "film.h",
 );
 
-/// The text of the given files of `cl/`, one after the other, every `#include "..."` replaced by the file. A file with
-/// `#pragma once` comes once. `#line` marks keep the compiler's messages at `cl/FILE:LINE`.
-pub fn resolve(names: &[&str]) -> String {
-    let mut text = String::new();
-    let mut seen = HashSet::new();
-    for name in names {
-        append(name, &mut seen, &mut text);
-    }
-    text
+/// The files that a program may include, and what its templates are made for.
+#[derive(Debug, Clone, Default)]
+pub struct Sources<'a> {
+    /// Every file that there is.
+    pub files: Vec<SourceFile<'a>>,
+    /// A file with `#pragma each_kind` comes once for each of these, with `KIND` defined as its name.
+    pub kinds: Vec<&'a str>,
 }
 
-/// Like [`resolve`], for a text that is not in `cl/` but includes files from there.
-pub(super) fn resolve_text(name: &str, source: &str) -> String {
-    let mut text = String::new();
-    expand(name, source, &mut HashSet::new(), &mut text);
-    text
-}
-
-fn append(name: &str, seen: &mut HashSet<String>, text: &mut String) {
-    match FILES.iter().find(|(file, _)| *file == name) {
-        Some((_, source)) => expand(&format!("cl/{name}"), source, seen, text),
-        None => text.push_str(&format!("#error \"no file cl/{name}\"\n")),
+impl Sources<'_> {
+    /// Gives the text of a file of `cl/`, every `#include "..."` replaced by the file. A file with `#pragma once` comes
+    /// once. `#line` marks keep the compiler's messages at `cl/FILE:LINE`.
+    pub fn resolve(&self, name: &str) -> String {
+        let mut text = String::new();
+        self.append(name, &mut HashSet::new(), &mut text);
+        text
     }
-}
 
-fn expand(name: &str, source: &str, seen: &mut HashSet<String>, text: &mut String) {
-    let is_new = seen.insert(name.to_owned());
-    if !is_new && source.contains("#pragma once") {
-        return;
+    /// Likewise for a text that is not in `cl/` but includes files from there.
+    pub fn resolve_text(&self, name: &str, source: &str) -> String {
+        let mut text = String::new();
+        self.expand(name, source, &mut HashSet::new(), &mut text);
+        text
     }
-    text.push_str(&format!("#line 1 \"{name}\"\n"));
-    for (index, line) in source.lines().enumerate() {
-        if let Some(included) = included_file(line) {
-            append(&relative_to(name, included), seen, text);
-            text.push_str(&format!("#line {} \"{name}\"\n", index + 2));
-        } else if line.trim() == "#pragma once" {
-            text.push('\n');
-        } else {
-            text.push_str(line);
-            text.push('\n');
+
+    fn append(&self, name: &str, seen: &mut HashSet<String>, text: &mut String) {
+        match self.files.iter().find(|(file, _)| *file == name) {
+            Some((_, source)) => self.expand(&format!("cl/{name}"), source, seen, text),
+            None => text.push_str(&format!("#error \"no file cl/{name}\"\n")),
+        }
+    }
+
+    fn expand(&self, name: &str, source: &str, seen: &mut HashSet<String>, text: &mut String) {
+        let has_pragma = |pragma: &str| source.lines().any(|line| line.trim() == pragma);
+        let is_new = seen.insert(name.to_owned());
+        if !is_new && has_pragma("#pragma once") {
+            return;
+        }
+        match has_pragma("#pragma each_kind") {
+            false => self.expand_lines(name, source, seen, text),
+            true => {
+                for kind in &self.kinds {
+                    text.push_str(&format!("#define KIND {kind}\n"));
+                    self.expand_lines(name, source, seen, text);
+                    text.push_str("#undef KIND\n");
+                }
+            }
+        }
+    }
+
+    fn expand_lines(
+        &self,
+        name: &str,
+        source: &str,
+        seen: &mut HashSet<String>,
+        text: &mut String,
+    ) {
+        text.push_str(&format!("#line 1 \"{name}\"\n"));
+        for (index, line) in source.lines().enumerate() {
+            if let Some(included) = included_file(line) {
+                self.append(&relative_to(name, included), seen, text);
+                text.push_str(&format!("#line {} \"{name}\"\n", index + 2));
+            } else if ["#pragma once", "#pragma each_kind"].contains(&line.trim()) {
+                text.push('\n');
+            } else {
+                text.push_str(line);
+                text.push('\n');
+            }
         }
     }
 }
 
 fn included_file(line: &str) -> Option<&str> {
     let name = line.trim().strip_prefix("#include")?.trim();
-    name.strip_prefix('"')?.strip_suffix('"')
+    let name = name.strip_prefix('"')?;
+    name.split_once('"').map(|(name, _)| name)
 }
 
 /// The path from `cl/` of a file that is included by `cl/...` (or by a text outside, then from `cl/` itself).
@@ -115,65 +116,92 @@ fn relative_to(includer: &str, included: &str) -> String {
     parts.join("/")
 }
 
+/// The names of a kernel's parameters in a resolved text. `KINDS(SOURCE_PARAMETER)` stands for a list of each kind that the
+/// text defines in `KINDS`, `FILM_PARAMETER` for the film's buffer and its image where there is one.
+pub(super) fn parameters(text: &str, kernel: &str, has_image: bool) -> Vec<String> {
+    let head = format!("{kernel}(");
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    // The kernel's own name, not the end of another's.
+    let begins = |at: &usize| !text[..*at].ends_with(is_word);
+    let after_kernel = |at: &usize| {
+        let before = &text[..*at];
+        let last = before.rfind("__kernel");
+        last.is_some_and(|kernel| !before[kernel..].contains([';', '{', '}']))
+    };
+    let found = text.match_indices(&head).map(|(at, _)| at);
+    let Some(at) = found.filter(begins).find(after_kernel) else {
+        return Vec::new();
+    };
+    let from = at + head.len();
+    let Some(to) = text[from..].find(") {").map(|length| from + length) else {
+        return Vec::new();
+    };
+    let mut names = Vec::new();
+    for declaration in text[from..to].split(',') {
+        let mut rest = declaration;
+        if let Some((_, after)) = rest.split_once("KINDS(SOURCE_PARAMETER)") {
+            names.extend(kinds_of(text).into_iter().map(|kind| format!("{kind}_list")));
+            rest = after;
+        }
+        let last = rest.rsplit(|c| !is_word(c)).find(|word| !word.is_empty());
+        match last {
+            Some("FILM_PARAMETER") => {
+                let film = ["pixels", "image"].into_iter().take(1 + usize::from(has_image));
+                names.extend(film.map(str::to_owned));
+            }
+            _ => names.extend(last.map(str::to_owned)),
+        }
+    }
+    names
+}
+
+/// The kinds of `#define KINDS(X) X(sphere, Sphere, 0) ...`.
+fn kinds_of(text: &str) -> Vec<&str> {
+    let line = text.lines().find(|line| line.starts_with("#define KINDS(X)"));
+    let rows = line.unwrap_or("").split(" X(").skip(1);
+    rows.filter_map(|row| row.split(',').next()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn includes_are_resolved_once_and_lines_keep_their_place() {
-        let text = resolve(&["render.cl", "trace.cl"]);
-        assert!(!text.contains("#include"), "an include is left");
-        assert!(!text.contains("#error \"no file"), "a file is missing");
-        assert_eq!(text.matches("floatv, intv and uintv hold").count(), 1);
-        assert_eq!(text.matches("composite Simpson").count(), 0);
-        assert_eq!(text.matches("floatv JOIN(simpson_, FIELD)").count(), 5);
-        // The line after an include is announced with its own number.
-        let render = FILES
-            .iter()
-            .find(|(name, _)| *name == "render.cl")
-            .unwrap()
-            .1;
-        let line = 1 + render.lines().position(|l| l.contains("__kernel")).unwrap();
-        let marked = text
-            .split("#line")
-            .find(|part| part.contains("__kernel void render"))
-            .unwrap();
-        let first: usize = marked.split_whitespace().next().unwrap().parse().unwrap();
-        let offset = marked
-            .lines()
-            .skip(1)
-            .position(|l| l.contains("__kernel"))
-            .unwrap();
-        assert_eq!(first + offset, line);
+    fn sources() -> Sources<'static> {
+        Sources {
+            files: vec![
+                ("a.h", "#pragma once\nA\n"),
+                ("x/b.h", "#include \"../a.h\" // why\nB\n"),
+                ("x/each.h", "#pragma each_kind\nmade_for(KIND)\n"),
+                ("main.cl", "#include \"a.h\"\n#include \"x/b.h\"\n#include \"x/each.h\"\nend\n"),
+            ],
+            kinds: vec!["sphere", "torus"],
+        }
     }
 
     #[test]
-    fn every_file_of_the_folder_is_embedded() {
-        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cl");
-        let mut folders = vec![root.clone()];
-        let mut found = 0;
-        while let Some(folder) = folders.pop() {
-            for entry in std::fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    folders.push(path);
-                    continue;
-                }
-                let name = path
-                    .strip_prefix(&root)
-                    .unwrap()
-                    .to_str()
-                    .unwrap()
-                    .to_owned();
-                if name.ends_with(".h") || name.ends_with(".cl") {
-                    assert!(
-                        FILES.iter().any(|(file, _)| *file == name),
-                        "{name} is not embedded"
-                    );
-                    found += 1;
-                }
-            }
-        }
-        assert_eq!(found, FILES.len());
+    fn includes_are_resolved_once_templates_for_each_kind_and_lines_keep_their_place() {
+        let text = sources().resolve("main.cl");
+        assert!(!text.contains("#include") && !text.contains("#error"), "{text}");
+        assert_eq!(text.matches("\nA\n").count(), 1, "{text}");
+        assert_eq!(text.matches("made_for").count(), 2, "{text}");
+        assert!(text.contains("#define KIND torus\n#line 1 \"cl/x/each.h\"\n\nmade_for"));
+        assert!(text.ends_with("#undef KIND\n#line 4 \"cl/main.cl\"\nend\n"), "{text}");
+        let missing = sources().resolve_text("mine.cl", "#include \"none.h\"\n");
+        assert!(missing.contains("#error \"no file cl/none.h\""), "{missing}");
+    }
+
+    #[test]
+    fn a_kernels_parameters_are_found_by_name() {
+        let text = "#define KINDS(X) X(sphere, Sphere, 0) X(torus, Torus, 3)\n\
+                    void not_draw(int a) { draw(1); }\n\
+                    __kernel __attribute__((reqd_work_group_size(4, 1, 1))) void\ndraw(const View view,\n  \
+                    KINDS(SOURCE_PARAMETER) __global const float *const restrict depths,\n  \
+                    FILM_PARAMETER, const uint last) {\n}\n";
+        let names = |has_image| parameters(text, "draw", has_image);
+        let all = ["view", "sphere_list", "torus_list", "depths", "pixels", "image", "last"];
+        assert_eq!(names(true), all);
+        assert_eq!(names(false).len(), 6);
+        assert!(parameters(text, "not_draw", true).is_empty());
+        assert!(parameters(text, "missing", true).is_empty());
     }
 }

@@ -1,91 +1,30 @@
 //! The truth in float64, by another method than the kernels': adaptive quadrature on the pieces between the points where
 //! a ray comes closest to a core. Also the built-in device `reference`, which needs no OpenCL.
 //!
-//! [`simpson`] is the paper's composite rule in float64, to check the kernels' Simpson.
+//! [`render_simpson`] is the paper's composite rule in float64, to check the kernels' Simpson.
 
-mod curve;
 mod field;
 mod quadrature;
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-pub use curve::{CurveField, b_spline};
-pub use field::{Field, Sample};
-pub use quadrature::{Estimate, integrate};
+#[doc(hidden)]
+pub use field::{CurveField, Field, Sample, Source, b_spline, sources};
+#[doc(hidden)]
+pub use quadrature::integrate;
 
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
-use crate::ray::{Ray, ViewPlane};
-use crate::scene::{Decay, Measure, Method, Profile, Scene, Sphere};
+use crate::scene::{CORE_FLOOR, Decay, Measure, Method, Profile, Ray, Scene, ViewPlane};
 
 /// Relative error that [`exact`] aims at.
 pub const RELATIVE_ERROR: f64 = 1e-10;
 
-/// On every device the squared distance is never taken below `(CORE_FLOOR |E - S|)^2`, so that every pixel is finite.
-pub const CORE_FLOOR: f64 = 1e-6;
-
-/// A part of a source: `emission` times the integral of its field.
-#[derive(Debug, Clone)]
-pub struct Source {
-    /// What the field falls off from.
-    pub field: Field,
-    /// How it falls off.
-    pub profile: Profile,
-    /// Colour times coefficient, linear RGB.
-    pub emission: DVec3,
-}
-
-/// Every source of a scene, a beam as up to three: line, cap and sphere.
-pub fn sources(scene: &Scene) -> Vec<Source> {
-    let source = |field, profile, coefficient: f64, color: DVec3| Source {
-        field,
-        profile,
-        emission: color * coefficient,
-    };
-    let spheres = scene
-        .spheres
-        .iter()
-        .map(|s| source(Field::Sphere(s.clone()), s.profile, s.coefficient, s.color));
-    let cylinders = scene.cylinders.iter().map(|c| {
-        let mut unit = c.clone();
-        unit.direction = c.direction.normalize();
-        source(Field::Cylinder(unit), c.profile, c.coefficient, c.color)
-    });
-    let beams = scene.beams.iter().flat_map(|b| {
-        let mut unit = b.clone();
-        unit.direction = b.direction.normalize();
-        let sphere = Sphere {
-            center: b.tip,
-            ..Sphere::default()
-        };
-        let parts = [
-            (Field::BeamLine(unit.clone()), b.coefficient),
-            (Field::BeamCap(unit), b.cap()),
-            (Field::Sphere(sphere), b.sphere_coefficient),
-        ];
-        let lit = parts
-            .into_iter()
-            .filter(|(_, coefficient)| *coefficient != 0.0);
-        lit.map(|(field, coefficient)| source(field, b.profile, coefficient, b.color))
-            .collect::<Vec<_>>()
-    });
-    let tori = scene.tori.iter().map(|t| {
-        let mut unit = t.clone();
-        unit.axis = t.axis.normalize();
-        source(Field::Torus(unit), t.profile, t.coefficient, t.color)
-    });
-    let curves = scene.curves.iter().map(|c| {
-        let field = Field::Curve(CurveField::new(c));
-        source(field, c.profile, c.coefficient, c.color)
-    });
-    let open = spheres.chain(cylinders).chain(beams);
-    open.chain(tori).chain(curves).collect()
-}
-
 /// What is integrated along a ray besides the field.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Integrand {
     /// Decay; `None`: zeta = 1.
@@ -95,7 +34,7 @@ pub struct Integrand {
 }
 
 impl Integrand {
-    /// `psi(L(s)) zeta(s)` for one source of emission 1.
+    /// Returns `psi(L(s)) zeta(s)` for one source of emission 1.
     pub fn at(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
         let floor = CORE_FLOOR * CORE_FLOOR * ray.span.length_squared();
         let sample = source.field.sample(ray.at(s));
@@ -109,7 +48,8 @@ impl Integrand {
     }
 }
 
-/// The integral over s in `[0,end]` of a source's field times the decay, to [`RELATIVE_ERROR`].
+/// Integrates a source's field times the decay over s in `[0,end]`, to [`RELATIVE_ERROR`].
+#[doc(hidden)]
 pub fn exact(source: &Source, ray: &Ray, integrand: &Integrand, end: f64) -> f64 {
     let mut breaks = Vec::with_capacity(16);
     source.field.breaks(ray, &mut breaks);
@@ -122,15 +62,16 @@ pub fn exact(source: &Source, ray: &Ray, integrand: &Integrand, end: f64) -> f64
     .value
 }
 
-/// The same integral by the composite Simpson rule with an even number of equal divisions (2015, eq. 23).
+/// Takes the same integral by the composite Simpson rule with an even number of equal divisions (2015, eq. 23).
+#[doc(hidden)]
 pub fn simpson(source: &Source, ray: &Ray, integrand: &Integrand, end: f64, divisions: u32) -> f64 {
     simpson_nodes(divisions)
         .map(|(s, weight)| end * weight * integrand.at(source, ray, end * s))
         .sum()
 }
 
-/// Parameter and weight of each of the `divisions + 1` samples of the composite Simpson rule over `[0,1]`.
-pub fn simpson_nodes(divisions: u32) -> impl Iterator<Item = (f64, f64)> {
+/// Gives parameter and weight of each of the `divisions + 1` samples of the composite Simpson rule over `[0,1]`.
+fn simpson_nodes(divisions: u32) -> impl Iterator<Item = (f64, f64)> {
     let n = f64::from(divisions);
     (0..=divisions).map(move |k| {
         let factor = match k {
@@ -143,48 +84,52 @@ pub fn simpson_nodes(divisions: u32) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// The scene's linear radiance in float64, every integral to [`RELATIVE_ERROR`], whatever the scene's method. Runs on all
-/// cores.
+/// Renders the scene's linear radiance in float64, every integral to [`RELATIVE_ERROR`], whatever the scene's method. Runs
+/// on all cores.
 ///
 /// # Errors
 /// [`Error::Scene`] if the scene is not valid, [`Error::OutOfMemory`] if the image is too large for memory.
 pub fn render(scene: &Scene) -> Result<RadianceImage> {
-    render_image(scene, Method::Exact)
+    render_image(scene, Method::default())
 }
 
-/// The scene's linear radiance by the float64 Simpson rule with the scene's divisions.
+/// Renders the scene's linear radiance by the float64 Simpson rule, whatever the scene's method.
 ///
 /// # Errors
 /// As [`render`].
-pub fn render_simpson(scene: &Scene) -> Result<RadianceImage> {
-    render_image(scene, Method::Simpson)
+pub fn render_simpson(scene: &Scene, divisions: u32) -> Result<RadianceImage> {
+    render_image(scene, Method::Simpson { divisions })
 }
 
 fn render_image(scene: &Scene, method: Method) -> Result<RadianceImage> {
     scene.validate()?;
     let mut image = RadianceImage::new(scene.image)?;
     let nothing = &mut |_: f32| ControlFlow::Continue(());
-    render_into(scene, method, image.as_mut_slice(), nothing)?;
+    let rows = 0..scene.image.height;
+    render_rows(scene, method, rows, image.as_mut_slice(), nothing)?;
     Ok(image)
 }
 
-/// Renders a validated scene into `target`, RGBA by rows, in bands between which `progress` may stop the work.
-pub(crate) fn render_into(
+/// Renders some rows of a validated scene into `target`, RGBA by rows, in bands between which `progress` may stop the
+/// work.
+pub(crate) fn render_rows(
     scene: &Scene,
     method: Method,
+    rows: Range<u32>,
     target: &mut [f32],
     progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
 ) -> Result<()> {
     let plane = ViewPlane::new(&scene.camera, scene.image);
-    let tracer = Tracer::new(scene, method, plane.ray_length);
+    let tracer = Tracer::new(scene, method);
     let band_len = tracer.band_len();
-    let band_count = scene.image.pixels().div_ceil(band_len);
+    let first = rows.start as usize * scene.image.width as usize;
+    let band_count = target.len().div_ceil(4 * band_len);
     for (band, pixels) in target.chunks_mut(4 * band_len).enumerate() {
         pixels
             .par_chunks_exact_mut(4)
             .enumerate()
             .for_each(|(i, pixel)| {
-                let index = band * band_len + i;
+                let index = first + band * band_len + i;
                 let light = tracer.pixel(scene, &plane, index).as_vec3();
                 pixel.copy_from_slice(&[light.x, light.y, light.z, 1.0]);
             });
@@ -200,13 +145,11 @@ pub(crate) struct Tracer {
     sources: Vec<Source>,
     integrand: Integrand,
     method: Method,
-    divisions: u32,
-    measure: f64,
+    measure: Measure,
 }
 
 impl Tracer {
-    /// `ray_length` is `|E - S|`, which counts where light is measured by length.
-    pub(crate) fn new(scene: &Scene, method: Method, ray_length: f64) -> Self {
+    pub(crate) fn new(scene: &Scene, method: Method) -> Self {
         Self {
             sources: sources(scene),
             integrand: Integrand {
@@ -214,11 +157,7 @@ impl Tracer {
                 softening: scene.integration.softening,
             },
             method,
-            divisions: scene.integration.divisions,
-            measure: match scene.integration.measure {
-                Measure::Parameter => 1.0,
-                Measure::Length => ray_length,
-            },
+            measure: scene.integration.measure,
         }
     }
 
@@ -234,12 +173,18 @@ impl Tracer {
 
     /// Linear RGB along a ray, over s in `[0,end]`.
     pub(crate) fn radiance(&self, ray: &Ray, end: f64) -> DVec3 {
+        let measure = match self.measure {
+            Measure::Parameter => 1.0,
+            Measure::Length => ray.span.length(),
+        };
         let light = |source: &Source| {
             let integral = match self.method {
-                Method::Exact => exact(source, ray, &self.integrand, end),
-                Method::Simpson => simpson(source, ray, &self.integrand, end, self.divisions),
+                Method::Exact { .. } => exact(source, ray, &self.integrand, end),
+                Method::Simpson { divisions } => {
+                    simpson(source, ray, &self.integrand, end, divisions)
+                }
             };
-            source.emission * integral * self.measure
+            source.emission * integral * measure
         };
         self.sources.iter().map(light).sum()
     }
@@ -247,8 +192,8 @@ impl Tracer {
     /// Pixels that take some tenths of a second, at 50 ns a sample.
     fn band_len(&self) -> usize {
         let samples = match self.method {
-            Method::Exact => 500,
-            Method::Simpson => self.divisions as usize + 1,
+            Method::Exact { .. } => 500,
+            Method::Simpson { divisions } => divisions as usize + 1,
         };
         (10_000_000 / (samples * self.sources.len().max(1))).clamp(16, 16384)
     }

@@ -1,5 +1,6 @@
 // Single device functions, for tests/device_functions.rs: each work-item takes LANES values of every list.
-#include "radiance.h"
+#include "elementary.h"
+#include "wave/radiance.h"
 
 #if LANES == 1
 #define LOAD(list) (list)[get_global_id(0)]
@@ -48,12 +49,12 @@ __kernel void spline(__global const SplinePiece *pieces, __global const float *c
 }
 
 // 1 / field at the point S + s (E - S), for the first source of a kind.
-#define FIELD_KERNEL(kind, Kind, list)                                                                                 \
-    __kernel void kind##_distance(__global const Kind *first, __global const float *ox, __global const float *oy,      \
+#define FIELD_KERNEL(kind, Type, number)                                                                               \
+    __kernel void kind##_distance(__global const Type *first, __global const float *ox, __global const float *oy,      \
                                   __global const float *oz, __global const float *dx, __global const float *dy,        \
                                   __global const float *dz, __global const float *ss, __global float *result) {        \
-        Sources sources = {0, 0, 0, 0, 0, 0};                                                                          \
-        sources.list = first;                                                                                          \
+        Sources sources = {0};                                                                                         \
+        sources.kind##_list = first;                                                                                   \
         const fine3v origin = {to_finev(LOAD(ox)), to_finev(LOAD(oy)), to_finev(LOAD(oz))};                            \
         const fine3v span = {to_finev(LOAD(dx)), to_finev(LOAD(dy)), to_finev(LOAD(dz))};                              \
         const Ray ray = make_ray(origin, span, splat(1.0f), length3(from_fine3(span)), 0.0f);                          \
@@ -61,8 +62,4 @@ __kernel void spline(__global const SplinePiece *pieces, __global const float *c
         STORE(1.0f / kind##_field(&path, LOAD(ss)), result);                                                           \
     }
 
-FIELD_KERNEL(sphere, Sphere, spheres)
-FIELD_KERNEL(cylinder, Cylinder, cylinders)
-FIELD_KERNEL(beam, Beam, beams)
-FIELD_KERNEL(torus, Torus, tori)
-FIELD_KERNEL(curve, Curve, curves)
+KINDS(FIELD_KERNEL)

@@ -1,0 +1,170 @@
+// Writes one RGBA pixel for every lane, alpha 1, to where a launch's light goes. Every engine ends here: its kernel
+// takes a FilmPart and FILM_PARAMETER, and gives its light to store_pixels.
+#pragma once
+#include "check_size.h"
+#include "lanes.h"
+
+// The pixels of a launch, and where their light goes: a buffer, by rows. Built with -D IMAGE or -D HALVES, the last
+// launch of a pixel writes it to an image or to half floats instead, and the buffer only has what earlier ones have
+// gathered.
+typedef struct {
+    uint first;   // index of the first pixel (or ray), row by row from the top left
+    uint count;   // pixels
+    uint slot;    // where in the buffer the first pixel goes, in pixels
+    uint width;   // pixels in a row of the image
+    uint adds;    // 0: overwrite the buffer; 1: add to it
+    uint is_last; // 1: no launch adds to these pixels any more
+} FilmPart;
+CHECK_SIZE(FilmPart, SIZEOF_FILMPART);
+
+#if defined(IMAGE)
+#define IMAGE_PARAMETER , __write_only image2d_t image
+#define IMAGE_ARGUMENT , image
+#elif defined(HALVES)
+#define IMAGE_PARAMETER , __global half *const image
+#define IMAGE_ARGUMENT , image
+#else
+#define IMAGE_PARAMETER
+#define IMAGE_ARGUMENT
+#endif
+
+// The buffer, and what finished pixels go to where that is another.
+#define FILM_PARAMETER __global float4 *const restrict pixels IMAGE_PARAMETER
+#define FILM_ARGUMENT pixels IMAGE_ARGUMENT
+
+// Vectors of channels, and where those of pixels that are stored as a whole go.
+#ifdef HALVES
+typedef __global half *Channels;
+#define STORE(n) JOIN(vstore_half, n)
+#else
+typedef __global float *Channels;
+#define STORE(n) JOIN(vstore, n)
+#endif
+
+#if !defined(NO_SHUFFLES) && !defined(IMAGE)
+#define STORES_WHOLE
+bool stores_whole(const FilmPart *const part) {
+#ifdef HALVES
+    return part->is_last && !part->adds;
+#else
+    return !part->adds;
+#endif
+}
+
+Channels channels_of(const FilmPart *const part, const uint index, FILM_PARAMETER) {
+#ifdef HALVES
+    return image + 4u * (part->first + index);
+#else
+    return (Channels)(pixels + part->slot + index);
+#endif
+}
+#endif
+
+// What half floats hold, where pixels become that.
+#ifdef HALF_RANGE
+#define IN_RANGE(light) min(light, 65504.0f)
+#else
+#define IN_RANGE(light) (light)
+#endif
+
+// How many lanes have a pixel, when so many pixels are left.
+#ifndef LAST_LANES
+#define LAST_LANES(left) min(left, (uint)LANES)
+#endif
+
+#if LANES > 1
+#define HALF_FLOATS JOIN(float, HALF_LANES)
+#if LANES == 16
+#define HALF_LANES 8
+typedef ulong8 pairv;
+#define as_pairv as_ulong8
+#elif LANES == 8
+#define HALF_LANES 4
+typedef ulong4 pairv;
+#define as_pairv as_ulong4
+#else
+#define HALF_LANES 2
+typedef ulong2 pairv;
+#define as_pairv as_ulong2
+#endif
+
+// Half the lanes' pixels from their channels: red with green and blue with alpha, then pairs with pairs. Said element
+// by element the same costs a torus of 64 divisions a tenth of its frame.
+void store_half(const Channels channels, const HALF_FLOATS red, const HALF_FLOATS green, const HALF_FLOATS blue) {
+    floatv red_green = splat(0.0f), blue_alpha = splat(1.0f);
+    red_green.even = red, red_green.odd = green, blue_alpha.even = blue;
+    pairv first = (pairv)(0), second = (pairv)(0);
+    first.even = as_pairv(red_green).lo, first.odd = as_pairv(blue_alpha).lo;
+    second.even = as_pairv(red_green).hi, second.odd = as_pairv(blue_alpha).hi;
+    STORE(LANES)(IN_RANGE(as_floatv(first)), 0, channels);
+    STORE(LANES)(IN_RANGE(as_floatv(second)), 1, channels);
+}
+#endif
+
+// Writes all lanes, half of them in each of two places.
+INLINE void store_all_pixels(const Channels first_half, const Channels second_half, const float3v color) {
+#if LANES == 1
+    STORE(4)(IN_RANGE((float4)(color.x, color.y, color.z, 1.0f)), 0, first_half);
+#else
+    store_half(first_half, color.x.lo, color.y.lo, color.z.lo);
+    store_half(second_half, color.x.hi, color.y.hi, color.z.hi);
+#endif
+}
+
+INLINE void store_pixel(const FilmPart *const part, const uint index, const float4 light, FILM_PARAMETER) {
+    __global float4 *const gathered = pixels + part->slot + index;
+    const float4 before = part->adds ? *gathered : (float4)(0.0f);
+    const float4 pixel = (float4)((light + before).xyz, 1.0f);
+#ifdef IMAGE
+    if (part->is_last) {
+        const int place = (int)(part->first + index), width = (int)part->width;
+        write_imagef(image, (int2)(place % width, place / width), IN_RANGE(pixel));
+        return;
+    }
+#elif defined(HALVES)
+    if (part->is_last) {
+        vstore_half4(IN_RANGE(pixel), part->first + index, image);
+        return;
+    }
+#endif
+    *gathered = pixel;
+}
+
+// The lanes one by one: pixels of a block of so many columns, `pitch` pixels from one row to the next, of which the
+// image has some.
+typedef struct {
+    uint first_lane; // of this work-item in the block
+    uint block_width, pitch;
+    uint columns, rows; // that the image has
+} Clip;
+
+INLINE void store_clipped(const FilmPart *const part, const uint corner, const Clip *const clip, const float3v color,
+                          FILM_PARAMETER) {
+    float red[LANES], green[LANES], blue[LANES];
+    scatter(color.x, red);
+    scatter(color.y, green);
+    scatter(color.z, blue);
+    for (uint lane = 0; lane < LANES; ++lane) {
+        const uint column = (clip->first_lane + lane) % clip->block_width;
+        const uint row = (clip->first_lane + lane) / clip->block_width;
+        if (column >= clip->columns || row >= clip->rows)
+            continue;
+        const float4 light = (float4)(red[lane], green[lane], blue[lane], 0.0f);
+        store_pixel(part, corner + row * clip->pitch + column, light, FILM_ARGUMENT);
+    }
+}
+
+// Writes (or adds) the light of LANES consecutive pixels, `begin` pixels behind the part's first; of those beyond its
+// end, nothing.
+INLINE void store_pixels(const FilmPart *const part, const uint begin, const float3v light, FILM_PARAMETER) {
+    const uint count = LAST_LANES(part->count - begin);
+#ifdef STORES_WHOLE
+    if (count == LANES && stores_whole(part)) {
+        const Channels channels = channels_of(part, begin, FILM_ARGUMENT);
+        store_all_pixels(channels, channels + 4 * LANES / 2, light);
+        return;
+    }
+#endif
+    const Clip clip = {0, LANES, 0, count, 1};
+    store_clipped(part, begin, &clip, light, FILM_ARGUMENT);
+}

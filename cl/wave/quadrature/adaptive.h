@@ -1,0 +1,184 @@
+// The integral of the field of a KIND times the decay, to a relative error: Gauss-Legendre quadrature on mapped panels
+// (panel.h). Two null rules on the same nodes, the highest Legendre coefficients that they see, tell how well a panel
+// is resolved; one that is not is cut in two, in all lanes. A kind without closed form includes this file at the end of
+// its own header, where it has defined KIND: that makes its KIND_integral, torus_integral for instance.
+//
+// The host gives the positive nodes of the rule, the outermost first, their weights and those of the null rules as
+// GAUSS_..., and as `threshold` how large the coefficients may be, of the integral.
+
+// Panels that may be open at once, cuts of a ray's panels in all, and the advance of v below which a panel is empty,
+// the share of a panel beyond its outermost node, and the share of the first estimate that errors may be measured by.
+#ifndef MOST_CUTS
+#define MOST_CUTS 64
+#endif
+#define MOST_PANELS 24
+#define BEYOND_NODES 0.03f
+#define FIRST_ESTIMATE 0.25f
+
+typedef struct {
+    KIND_near near;
+    Panel map;
+    floatv base, from, to;
+} KIND_panel;
+
+INLINE KIND_panel KIND_open_panel(const KIND_peaks *const peaks, const Decay decay, const floatv from,
+                                  const floatv to) {
+    KIND_panel panel;
+    Peak peak;
+    panel.near = KIND_approach(peaks, from, to, &peak, &panel.base);
+    panel.map = mapped_panel(decay, peak, from, to, panel.base);
+    panel.from = from, panel.to = to;
+    return panel;
+}
+
+INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay, KIND_panel *const panel) {
+    const float node[GAUSS_PAIRS] = GAUSS_NODES;
+    const float weight[GAUSS_PAIRS] = GAUSS_WEIGHTS;
+    const float null_even[GAUSS_PAIRS] = GAUSS_NULL_EVEN;
+    const float null_odd[GAUSS_PAIRS] = GAUSS_NULL_ODD;
+    const Panel *const map = &panel->map;
+    // All nodes first, then the field at all of them: chains of operations that do not wait for each other.
+    floatv right_s[GAUSS_PAIRS], left_s[GAUSS_PAIRS], right_v[GAUSS_PAIRS], left_v[GAUSS_PAIRS];
+#pragma unroll
+    for (int k = 0; k < GAUSS_PAIRS; ++k) {
+        const floatv grown = power_of_two(map->half_length * node[k]), shrunk = coarse_inverse(grown);
+        const floatv right_up = map->rising * grown, right_down = map->falling * shrunk;
+        const floatv left_up = map->rising * shrunk, left_down = map->falling * grown;
+        right_s[k] = parameter_of(map, map->middle + (right_up - right_down));
+        left_s[k] = parameter_of(map, map->middle + (left_up - left_down));
+        right_v[k] = right_up + right_down;
+        left_v[k] = left_up + left_down;
+    }
+#if KIND_HAS(look_ahead)
+    KIND_look_ahead(&panel->near, left_s, right_s, GAUSS_PAIRS);
+#endif
+    floatv sum = splat(0.0f), even = splat(0.0f), odd = splat(0.0f);
+#pragma unroll
+    for (int k = 0; k < GAUSS_PAIRS; ++k) {
+        const floatv right = right_v[k] * KIND_near_field(&panel->near, right_s[k]);
+        const floatv left = left_v[k] * KIND_near_field(&panel->near, left_s[k]);
+        const floatv both = right + left;
+        sum = fma(both, splat(weight[k]), sum);
+        even = fma(both, splat(null_even[k]), even);
+        odd = fma(right - left, splat(null_odd[k]), odd);
+    }
+    const floatv scale = LN_2 * decay.strength * map->half_length;
+    const floatv middle = panel->base + parameter_of(map, map->middle + (map->rising - map->falling));
+#if KIND_HAS(jumps)
+    const intv is_broken =
+        KIND_is_broken(peaks, panel->from, panel->to, panel->base + left_s[0], panel->base + right_s[0]);
+#else
+    const intv is_broken = (intv)(0);
+#endif
+    const PanelSum result = {scale * sum, scale * scale * fma(even, even, odd * odd),
+                             clamp(middle, panel->from, panel->to), is_broken};
+    return result;
+}
+
+#if KIND_HAS(two_panels)
+// The two panels on both sides of a cut at once: what one waits for, the other fills. Whether both are resolved.
+INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold, const floatv cut,
+                            floatv *const integral) {
+    const floatv end = peaks->ray->end;
+    const intv has_first = !is_empty_panel(decay, splat(0.0f), cut), has_second = !is_empty_panel(decay, cut, end);
+    const floatv first_end = select(splat(1.0f), cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
+    const floatv second_end = select(splat(1.0f), end, has_second);
+    KIND_panel first = KIND_open_panel(peaks, decay, splat(0.0f), first_end);
+    KIND_panel second = KIND_open_panel(peaks, decay, second_begin, second_end);
+    const PanelSum of_first = KIND_sum_panel(peaks, decay, &first);
+    const PanelSum of_second = KIND_sum_panel(peaks, decay, &second);
+    *integral = select(splat(0.0f), of_first.integral, has_first) + select(splat(0.0f), of_second.integral, has_second);
+    const floatv allowed = threshold * *integral;
+    const intv is_rough = ((of_first.unresolved2 > allowed * allowed) & has_first) |
+                          ((of_second.unresolved2 > allowed * allowed) & has_second);
+    return !any_lane(is_rough);
+}
+#endif
+
+// A kernel that takes integrals in several places may have them as calls: -D PER_RAY=
+#ifndef PER_RAY
+#define PER_RAY INLINE
+#endif
+
+PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources, const uint index,
+                             const Quadrature *const quadrature) {
+    const Decay decay = quadrature->decay;
+#if KIND_HAS(kinks)
+    const float threshold = quadrature->kinked_threshold;
+#else
+    const float threshold = quadrature->smooth_threshold;
+#endif
+    const KIND_peaks peaks = KIND_peaks_along(ray, sources, index);
+    floatv all_from[MOST_PANELS], all_to[MOST_PANELS], integral;
+    uint open = KIND_panels(&peaks, decay, all_from, all_to, &integral);
+#if KIND_HAS(more_cuts)
+    const uint most_cuts = MOST_CUTS + KIND_more_cuts(&peaks);
+#else
+    const uint most_cuts = MOST_CUTS;
+#endif
+    uint cuts = 0, nodes = 0;
+    floatv estimate = integral;
+#if KIND_HAS(two_panels)
+    nodes += 4 * GAUSS_PAIRS;
+    floatv both;
+    if (KIND_two_panels(&peaks, decay, threshold, all_to[1], &both)) {
+        open = 0;
+        integral = both;
+    }
+    estimate = both;
+#endif
+    const uint all = open;
+#if KIND_HAS(dark_parts)
+    bool is_survey = KIND_is_uneven(&peaks);
+#else
+    bool is_survey = false;
+#endif
+    while (open > 0 || is_survey) {
+        if (open == 0) {
+            is_survey = false, open = all;
+            continue;
+        }
+        --open;
+        const floatv from = all_from[open];
+        const intv is_empty = is_empty_panel(decay, from, all_to[open]);
+        if (!any_lane(!is_empty))
+            continue;
+        const floatv to = select(all_to[open], splat(1.0f), is_empty);
+        floatv value = splat(0.0f);
+        intv is_done = is_empty;
+#if KIND_HAS(closed_ends)
+        if (cuts > 0)
+            is_done |= KIND_closed(&peaks, decay, from, to, &value);
+#endif
+        if (any_lane(!is_done)) {
+            KIND_panel opened = KIND_open_panel(&peaks, decay, from, to);
+            const PanelSum panel = KIND_sum_panel(&peaks, decay, &opened);
+            nodes += 2 * GAUSS_PAIRS;
+            value = select(panel.integral, value, is_done);
+            if (is_survey) {
+                estimate += select(value, splat(0.0f), is_empty);
+                continue;
+            }
+            const floatv allowed = threshold * max(fabs(integral + value), FIRST_ESTIMATE * fabs(estimate));
+            const intv is_unseen = panel.is_broken & (BEYOND_NODES * fabs(value) > allowed);
+            const intv is_rough = (panel.unresolved2 > allowed * allowed) | is_unseen;
+            if (cuts < most_cuts && open + 2 <= MOST_PANELS && any_lane(is_rough & !is_done)) {
+#if KIND_HAS(jumps)
+                const floatv cut = KIND_split(&peaks, from, to, panel.middle);
+#else
+                const floatv cut = panel.middle;
+#endif
+                all_from[open] = cut, all_to[open] = select(to, cut, is_empty);
+                all_from[open + 1] = from, all_to[open + 1] = select(cut, from, is_empty);
+                open += 2;
+                ++cuts;
+                continue;
+            }
+        }
+        integral += select(value, splat(0.0f), is_empty);
+    }
+#ifdef COUNT_NODES
+    atomic_add(quadrature->counts + COUNT_NODES_TAKEN, nodes * LANES);
+#endif
+    return integral;
+}

@@ -1,0 +1,38 @@
+// Radiance of a ray: the sum of emission times integral over the sources (Watanabe, Abe, Konno 2015, eq. 18, 20). The
+// host chooses the method, with -D EXACT the integrals themselves, else the Simpson sums of the paper, and the kinds of
+// source that a scene has: what it has not costs it neither compiling nor registers.
+#pragma once
+#include "../view.h"
+#include "kinds.h"
+#include "quadrature/quadrature.h"
+#include "source/names.h"
+#include "source/sources.h"
+
+#ifdef EXACT
+#define METHOD _integral
+#else
+#define METHOD _simpson
+#include "quadrature/simpson.h" // sphere_simpson and so on
+#endif
+
+// sphere_emission and so on.
+#define EMISSION_OF(kind, Type, number)                                                                                \
+    float4 kind##_emission(const Sources *const sources, const uint index) {                                           \
+        return sources->kind##_list[index].emission;                                                                   \
+    }
+KINDS(EMISSION_OF)
+
+// Adds the light of the sources of one kind that a launch names.
+#define ADD_LIGHT(kind, Type, number)                                                                                  \
+    for (uint i = launch->begin[number]; i < launch->end[number]; ++i) {                                               \
+        const floatv integral = JOIN(kind, METHOD)(ray, sources, i, quadrature);                                       \
+        radiance = fma3(uniform3(kind##_emission(sources, i)), integral, radiance);                                    \
+    }
+
+// Linear RGB of the sources that a launch names, a ray in every lane.
+INLINE float3v radiance_along(const Ray *const ray, const Sources *const sources, const Quadrature *const quadrature,
+                              const Launch *const launch) {
+    float3v radiance = uniform3((float4)(0.0f));
+    KINDS(ADD_LIGHT)
+    return radiance;
+}

@@ -1,0 +1,20 @@
+// The image: each work-item renders LANES consecutive pixels.
+#include "../film.h"
+#include "../view.h"
+#include "radiance.h"
+
+__kernel void render(const View view, const FilmPart part, const Integrand integrand, const Launch launch,
+                     __global const Node *const restrict nodes,
+                     KINDS(SOURCE_PARAMETER) __global const SplinePiece *const restrict spline_pieces,
+                     __global uint *const restrict counts, __global const float *const restrict depths,
+                     FILM_PARAMETER) {
+    const uint begin = get_global_id(0) * LANES;
+    if (begin >= part.count)
+        return;
+    const Sources sources = {KINDS(SOURCE_VALUE) spline_pieces};
+    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts);
+    const Screen screen = {&view, depths, integrand.softening2};
+    const Ray ray = pixel_ray(&screen, part.first + begin);
+    const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch);
+    store_pixels(&part, begin, radiance, FILM_ARGUMENT);
+}

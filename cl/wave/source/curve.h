@@ -1,0 +1,66 @@
+// Quadratic curve (Watanabe, Abe, Konno 2015, eq. 8-17): its struct, what it says of itself, and how clear of it a ray
+// is. The field along a ray stands in curve/field.h, where it peaks in curve/peaks.h, where a ray is cut in
+// curve/panels.h.
+#pragma once
+#include "../quadrature/quadrature.h"
+#include "../tiles/clearance.h"
+#include "names.h"
+#include "sources.h"
+
+// C(t) - C(1/2) = along * (velocity_along x) + across * (velocity_across x + bend x^2), with x = t - 1/2.
+typedef struct Curve {
+    float4 middle, middle_rest;     // C(1/2)
+    float4 velocity, velocity_rest; // C'(1/2)
+    float4 second, second_rest;     // C2: C(t) = C(1/2) + C'(1/2) x + C2 x^2
+    float4 along;                   // unit, in the plane of the curve, perpendicular to C2
+    float4 across;                  // unit, in the plane of the curve, along C2
+    float4 normal;                  // unit, perpendicular to the plane
+    float4 emission;
+    float velocity_along;
+    float velocity_across;
+    float bend;        // |C2|
+    float vertex;      // x of the parabola's vertex, negated
+    uint is_straight;  // 1: so straight that the cubic for the nearest point degenerates
+    uint spline_begin; // first of its pieces in the list of spline pieces
+    uint spline_count; // pieces of its local-intensity series; 0: intensity 1
+    uint is_square;
+} Curve;
+CHECK_SIZE(Curve, SIZEOF_CURVE);
+
+#define curve_has_parts 1       // of its local intensity
+#define curve_has_kinks 1       // where the nearest point jumps;
+#define curve_has_jumps 1       // with a local intensity the field does so too
+#define curve_has_closed_ends 1 // panels from which an end is nearest
+#define curve_has_dark_parts 1  // of its local intensity
+#define curve_has_more_cuts 1   // for the pieces of its local intensity
+#define curve_has_look_ahead 1  // for the numbers of roots
+
+// These use the struct.
+#include "curve/field.h"
+#include "curve/panels.h"
+#include "curve/peaks.h"
+
+// Both closest approaches of the ray's line, where the ray has them. Lengths are doubled.
+Clearance curve_clearance(const Ray *const ray, const Sources *const sources, const uint index,
+                          const float pixel_step) {
+    const curve_peaks peaks = curve_peaks_along(ray, sources, index);
+    const curve_path *const path = &peaks.path;
+    const curve_sight first = curve_seen_from(path, clamp(peaks.first, 0.0f, ray->end));
+    const curve_sight second = curve_seen_from(path, clamp(peaks.second, 0.0f, ray->end));
+    const floatv to_first2 = in_pixels2(ray, pixel_step, first.s, first.distance2 + path->softening2);
+    const floatv to_second2 = in_pixels2(ray, pixel_step, second.s, second.distance2 + path->softening2);
+    Clearance clearance = clear_by(0.25f * min(to_first2, to_second2));
+    if (path->spline_count) {
+        const float pieces = (float)path->spline_count;
+        clearance.seen[0] = pieces * select(first.x, second.x, to_second2 < to_first2);
+        clearance.seen[1] = pieces * curve_seen_from(path, splat(0.0f)).x;
+        clearance.seen[2] = pieces * curve_seen_from(path, ray->end).x;
+    }
+    return clearance;
+}
+
+#ifdef EXACT
+#define KIND curve
+#include "../quadrature/adaptive.h" // curve_integral
+#undef KIND
+#endif

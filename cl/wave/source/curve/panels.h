@@ -1,0 +1,262 @@
+// Where a ray's view of a curve changes: where it passes the reach of an end, and where the nearest point jumps. Panels
+// end there; those that belong to an end of the curve have a closed form.
+#pragma once
+#include "../../quadrature/stretch.h"
+#include "peaks.h"
+
+// Where a value that is linear along the ray is 0; 0 where it never is.
+floatv zero_of(const Linear value) {
+    const intv never = fabs(value.slope) < 1e-30f;
+    return select(-value.at / select(value.slope, splat(1.0f), never), splat(0.0f), never);
+}
+
+// The ray's crossing of the plane through an end, where that end becomes the nearest point, or ceases to be.
+floatv end_cut(const curve_path *const path, const Linear beyond, const float x) {
+    const floatv s = zero_of(beyond);
+    const float velocity_across = fma(2.0f * path->bend, x, path->velocity_across);
+    const float speed2 = fma(path->velocity_along, path->velocity_along, velocity_across * velocity_across);
+    const float end_across = fma(path->bend, x, path->velocity_across) * x;
+    const floatv across = linear_at(path->across, s) - end_across;
+    return select(splat(0.0f), s, speed2 - 2.0f * path->bend * across > 0.0f);
+}
+
+// Where the ray is equally far from C(1/2 + x) and C(1/2 + y), x and y apart; 0 where it never is. The difference of
+// the distances is small beside them, and where it is 0 the field may jump.
+INLINE floatv equidistant(const curve_peaks *const peaks, const floatv x, const floatv y) {
+    __global const Curve *const curve = peaks->curve;
+    const fine3v velocity = fine3(curve->velocity, curve->velocity_rest);
+    const fine3v second = fine3(curve->second, curve->second_rest);
+    const finev fine_x = to_finev(x), fine_y = to_finev(y);
+    const finev sum = fine_x + fine_y;
+    const finev half_squares = fma(fine_x, fine_x, fine_y * fine_y) * (finev)(0.5f);
+    const fine3v chord = fine_fma3(second, sum, velocity); // towards one from the other, in units of x - y
+    const fine3v origin = fine_between(peaks->ray, splat(0.0f), curve->middle, curve->middle_rest);
+    const fine3v from_middle = fine_fma3(velocity, -sum * (finev)(0.5f), fine_fma3(second, -half_squares, origin));
+    const floatv closing = peaks->ray->stretch * from_finev(fine_dot3(peaks->ray->fine_toward, chord));
+    const floatv gap = -from_finev(fine_dot3(from_middle, chord));
+    const intv never = fabs(closing) < 1e-30f;
+    return select(gap / select(closing, splat(1.0f), never), splat(0.0f), never);
+}
+
+// Where both ends are nearest points of their parts, and equally far.
+INLINE floatv ends_cut(const curve_peaks *const peaks, const Linear beyond_first, const Linear beyond_last) {
+    const curve_path *const path = &peaks->path;
+    const Linear difference =
+        linear(fma(path->along.at, splat(path->velocity_along),
+                   (path->across.at - 0.25f * path->bend) * path->velocity_across),
+               fma(path->along.slope, splat(path->velocity_along), path->across.slope * path->velocity_across));
+    const floatv s = zero_of(difference);
+    const intv is_there = (linear_at(beyond_first, s) <= 0.0f) & (linear_at(beyond_last, s) >= 0.0f);
+    if (!any_lane(is_there))
+        return splat(0.0f);
+    return select(splat(0.0f), equidistant(peaks, splat(-0.5f), splat(0.5f)), is_there);
+}
+
+// Where the nearest point jumps across the parabola's axis; else between two close approaches.
+INLINE floatv middle_cut(const curve_peaks *const peaks) {
+    const curve_path *const path = &peaks->path;
+    const floatv between = select(splat(0.0f), 0.5f * (peaks->first + peaks->second), peaks->are_two);
+    if (path->is_straight)
+        return between;
+    const floatv reach2 = -3.0f * linear_at(path->p, zero_of(path->h));
+    const float reach = min(0.5f - path->vertex, 0.5f + path->vertex);
+    const intv jumps = (reach2 > 0.0f) & (reach2 < reach * fabs(reach));
+    if (!any_lane(jumps))
+        return between;
+    return select(between, equidistant(peaks, splat(-1.0f - path->vertex), splat(1.0f - path->vertex)), jumps);
+}
+
+// A point of the ray, the parameter of the curve's point nearest to it, and their squared distance. A call: it is asked
+// for in many places, and rarely.
+typedef struct {
+    floatv s, x, distance2;
+} curve_sight;
+
+curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
+    const curve_point point = curve_point_at(path, s);
+    curve_sight sight;
+    sight.s = s;
+    sight.x = nearest_on_curve(path, &point, &sight.distance2);
+    return sight;
+}
+
+// Whether there may be a nearest point of its part between the ends, given that the end at x is one and the other is
+// not: beyond a turning point +-sqrt(-p) of the cubic that lies on the curve, the one on the far side from x.
+INLINE intv may_be_between(const curve_path *const path, const curve_point *const point, const floatv x) {
+    const float first = path->vertex - 0.5f, last = path->vertex + 0.5f;
+    const floatv near_end = select(splat(-last), splat(first), x < 0.0f);
+    const floatv far_end = select(splat(-first), splat(last), x < 0.0f);
+    const floatv turning2 = -point->p;
+    return has_three_roots(point->p, point->h) & (far_end > 0.0f) & (turning2 < far_end * far_end) &
+           ((near_end < 0.0f) | (turning2 > near_end * near_end));
+}
+
+// Whether the end of the curve at x is its point nearest to a point of the ray. Where the other end is a nearest point
+// of its part too, only that one competes.
+INLINE intv end_is_nearest(const curve_peaks *const peaks, const floatv x, const floatv s) {
+    const curve_path *const path = &peaks->path;
+    const curve_point point = curve_point_at(path, s);
+    const intv is_first = linear_at(peaks->beyond_first, s) <= 0.0f, is_last = linear_at(peaks->beyond_last, s) >= 0.0f;
+    const intv are_both = is_first & is_last;
+    intv is_nearest = select(is_last, is_first, x < 0.0f);
+    if (any_lane(are_both))
+        is_nearest &= !are_both | (curve_distance2(path, &point, x) <= curve_distance2(path, &point, -x));
+    const intv is_open = is_nearest & !are_both & (path->is_straight ? x == x : may_be_between(path, &point, x));
+    if (any_lane(is_open))
+        is_nearest &= !is_open | (curve_seen_from(path, s).x == x);
+    return is_nearest;
+}
+
+// Whether one end of the curve is the nearest point from all of a panel, and at which x it is: the points nearest to an
+// end form a convex set, so both ends of the panel tell.
+INLINE intv curve_is_closed(const curve_peaks *const peaks, const floatv from, const floatv to, floatv *const x) {
+    const curve_path *const path = &peaks->path;
+    const floatv middle = 0.5f * (from + to), inside = 1e-4f * (to - from);
+    const intv is_first = linear_at(peaks->beyond_first, middle) <= 0.0f;
+    const intv is_last = linear_at(peaks->beyond_last, middle) >= 0.0f;
+    const intv is_closed = (is_first | is_last) & (to > from);
+    *x = splat(0.0f);
+    if (!any_lane(is_closed))
+        return is_closed;
+    intv is_last_nearer = is_last;
+    if (any_lane(is_first & is_last)) {
+        const curve_point point = curve_point_at(path, middle);
+        const floatv to_first = curve_distance2(path, &point, splat(-0.5f));
+        is_last_nearer &= !is_first | (curve_distance2(path, &point, splat(0.5f)) < to_first);
+    }
+    *x = select(splat(-0.5f), splat(0.5f), is_last_nearer);
+    return is_closed & end_is_nearest(peaks, *x, from + inside) & end_is_nearest(peaks, *x, to - inside);
+}
+
+// The integral of a panel from all of which the end of the curve at x is the nearest point.
+INLINE floatv curve_closed_form(const curve_peaks *const peaks, const Decay decay, const floatv x, const floatv from,
+                                const floatv to) {
+    const curve_path *const path = &peaks->path;
+    floatv least;
+    const floatv nearest = closest_to_core(path, peaks->span2, x, &least);
+    if (any_lane(least < 1e-5f * peaks->span2)) {
+        const float3v offset = offset_from_core(peaks, nearest, x);
+        least = max(dot3(offset, offset), 1e-30f);
+    }
+    const floatv length = 0.5f * twice_sqrt(peaks->span2);
+    const Quadratic to_end = {length, -length * nearest, least + path->softening2};
+    const floatv integral = integral_over(evenly_lit(from, to), &to_end, path->floor2, decay, path->is_square);
+    return path->spline_count ? integral * curve_intensity(path, x) : integral;
+}
+
+// The integral of the lanes for which a panel is closed.
+INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, const floatv from, const floatv to,
+                         floatv *const integral) {
+    floatv x;
+    const intv is_closed = curve_is_closed(peaks, from, to, &x);
+    *integral = splat(0.0f);
+    if (any_lane(is_closed))
+        *integral = select(splat(0.0f), curve_closed_form(peaks, decay, x, from, to), is_closed);
+    return is_closed;
+}
+
+// Cuts the ray into panels, the last one first, and returns the integral of those that are closed: the parts that
+// belong to an end are one stretch of the ray. A lane that is done with a panel finds it empty.
+INLINE uint curve_panels(const curve_peaks *const peaks, const Decay decay, floatv *const from, floatv *const to,
+                         floatv *const integral) {
+    const curve_path *const path = &peaks->path;
+    const floatv end = peaks->ray->end;
+    const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, end);
+    const floatv b = clamp(end_cut(path, peaks->beyond_last, 0.5f), 0.0f, end);
+    const floatv c = clamp(ends_cut(peaks, peaks->beyond_first, peaks->beyond_last), 0.0f, end);
+    const floatv d = clamp(middle_cut(peaks), 0.0f, end);
+    const floatv less_ab = min(a, b), more_ab = max(a, b), less_cd = min(c, d), more_cd = max(c, d);
+    const floatv inner = max(less_ab, less_cd), outer = min(more_ab, more_cd);
+    to[0] = end;
+    to[1] = from[0] = max(more_ab, more_cd);
+    to[2] = from[1] = max(inner, outer);
+    to[3] = from[2] = min(inner, outer);
+    to[4] = from[3] = min(less_ab, less_cd);
+    from[4] = splat(0.0f);
+
+    floatv first_from = end, first_to = splat(0.0f), last_from = end, last_to = splat(0.0f);
+    for (uint k = 0; k < 5; ++k) {
+        if (!any_lane(to[k] > from[k]))
+            continue;
+        floatv x;
+        const intv is_closed = curve_is_closed(peaks, from[k], to[k], &x);
+        const intv is_first = is_closed & (x < 0.0f), is_last = is_closed & (x > 0.0f);
+        first_from = select(first_from, min(first_from, from[k]), is_first);
+        first_to = select(first_to, max(first_to, to[k]), is_first);
+        last_from = select(last_from, min(last_from, from[k]), is_last);
+        last_to = select(last_to, max(last_to, to[k]), is_last);
+        to[k] = select(to[k], from[k], is_closed);
+    }
+    // What lies between is closed too, whatever rounding said of it.
+    for (uint k = 0; k < 5; ++k) {
+        const intv in_first = (from[k] >= first_from) & (to[k] <= first_to);
+        const intv in_last = (from[k] >= last_from) & (to[k] <= last_to);
+        to[k] = select(to[k], from[k], in_first | in_last);
+    }
+    const floatv of_first = curve_closed_form(peaks, decay, splat(-0.5f), first_from, max(first_to, first_from));
+    const floatv of_last = curve_closed_form(peaks, decay, splat(0.5f), last_from, max(last_to, last_from));
+    *integral = of_first + of_last;
+    return 5;
+}
+
+// Whether all panels must be seen before errors can be measured by what they add up to: some may be dark.
+INLINE bool curve_is_uneven(const curve_peaks *const peaks) {
+    return peaks->path.spline_count > 0;
+}
+
+// Every piece of a local intensity may need panels of its own.
+INLINE uint curve_more_cuts(const curve_peaks *const peaks) {
+    return 4 * peaks->path.spline_count;
+}
+
+curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is_b) {
+    const curve_sight sight = {select(a.s, b.s, is_b), select(a.x, b.x, is_b), select(a.distance2, b.distance2, is_b)};
+    return sight;
+}
+
+// Whether the nearest point jumps between an end of a panel and the outermost node, unseen by all others: the
+// field has a kink there, which counts when tolerances are tight, and with a local intensity a jump. Or whether a panel
+// spans so many pieces of a local intensity that its nodes cannot see them all.
+INLINE intv curve_is_broken(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv first,
+                            const floatv last) {
+    const curve_path *const path = &peaks->path;
+#ifdef COARSE
+    if (!path->spline_count)
+        return from > to;
+#endif
+    const floatv inside = 1e-4f * (to - from);
+    const floatv at_begin = curve_seen_from(path, from + inside).x, at_end = curve_seen_from(path, to - inside).x;
+    const floatv begin = at_begin - curve_seen_from(path, first).x, end = at_end - curve_seen_from(path, last).x;
+    const floatv pieces = fabs(at_end - at_begin) * (float)path->spline_count;
+    return (max(fabs(begin), fabs(end)) > 0.1f) | (pieces > 4.0f);
+}
+
+// Where to cut a panel that is not resolved: where the nearest point jumps, or else in the middle. Halving closes in on
+// the fastest change; then both sides, continued as they are, meet in the jump.
+INLINE floatv curve_split(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv middle) {
+    const curve_path *const path = &peaks->path;
+    intv can_jump = from > to;
+    for (float share = 0.0f; share < 1.1f; share += 0.25f) {
+        const floatv s = fma(to - from, splat(share), from);
+        const floatv p = linear_at(path->p, s), h = linear_at(path->h, s);
+        can_jump |= has_three_roots(p, h);
+    }
+    if (path->is_straight || !any_lane(can_jump))
+        return middle;
+    const floatv inside = 1e-4f * (to - from);
+    curve_sight left = curve_seen_from(path, from + inside), right = curve_seen_from(path, to - inside);
+    const floatv change = fabs(right.x - left.x);
+    floatv s = 0.5f * (left.s + right.s);
+    for (int step = 0; step < 10; ++step) {
+        const curve_sight sight = curve_seen_from(path, s);
+        const intv is_left = fabs(sight.x - left.x) < fabs(sight.x - right.x);
+        left = select_sight(left, sight, is_left);
+        right = select_sight(sight, right, is_left);
+        s = 0.5f * (left.s + right.s);
+        if (step > 6)
+            s = clamp(equidistant(peaks, left.x, right.x), left.s, right.s);
+    }
+    const intv jumps = fabs(right.x - left.x) > max(0.25f * change, 1e-3f);
+    const intv is_inside = (s > from + inside) & (s < to - inside);
+    return select(middle, s, jumps & is_inside);
+}

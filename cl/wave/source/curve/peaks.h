@@ -1,0 +1,242 @@
+// Where a curve's field peaks along a ray, and the field beside such a point.
+//
+// Seen along the ray the curve is a plane parabola, and the ray a point: where they come closest solves a cubic
+// equation again. There the squared distance is about q(s) = e (s - s0)^2 + .., which has the field's value, slope and
+// curvature: e = |Q|^2 - (Q.C')^2 / (|C'|^2 - (P - C).C''), Q = E - S.
+#pragma once
+#include "../../quadrature/panel.h"
+#include "field.h"
+
+typedef struct {
+    curve_path path;
+    floatv span2;         // |E - S|^2
+    floatv first, second; // parameters s of the closest approaches; the same where there is but one
+    floatv first_distance2, second_distance2;
+    intv are_two;
+    Linear beyond_first, beyond_last; // (P - C).C' at both ends
+    const Ray *ray;
+    __global const Curve *curve;
+} curve_peaks;
+
+// Outer roots of the depressed cubic; both are the single root where there is one.
+INLINE intv least_and_greatest_root(const floatv p, const floatv h, floatv *const least, floatv *const greatest) {
+    const floatv discriminant = fma(p * p, p, h * h);
+    const intv has_three = discriminant <= 0.0f;
+    const floatv single = single_root(p, h, discriminant);
+    *least = single, *greatest = single;
+    if (any_lane(has_three)) {
+        floatv low, high;
+        outer_roots(p, h, &low, &high);
+        *least = select(single, low, has_three);
+        *greatest = select(single, high, has_three);
+    }
+    return has_three;
+}
+
+// The parameter s at which the ray passes closest to C(1/2 + x), and its squared distance there.
+floatv closest_to_core(const curve_path *const path, const floatv span2, const floatv x, floatv *const distance2) {
+    curve_point origin = curve_point_at(path, splat(0.0f));
+    const curve_offset offset = offset_from_curve(path, &origin, x);
+    const floatv s = -fma(offset.along, path->along.slope,
+                          fma(offset.across, path->across.slope, origin.normal * path->normal.slope)) *
+                     inverse(span2);
+    const floatv a = fma(s, path->along.slope, offset.along), b = fma(s, path->across.slope, offset.across);
+    const floatv c = fma(s, path->normal.slope, origin.normal);
+    *distance2 = fma(a, a, fma(b, b, c * c));
+    return s;
+}
+
+// (P - C).C' at an end of the curve, along the ray.
+Linear beyond_end(const curve_path *const path, const float x) {
+    const float velocity_across = fma(2.0f * path->bend, x, path->velocity_across);
+    const float end_along = path->velocity_along * x;
+    const float end_across = fma(path->bend, x, path->velocity_across) * x;
+    return linear(
+        fma(path->along.at - end_along, splat(path->velocity_along), (path->across.at - end_across) * velocity_across),
+        fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across));
+}
+
+INLINE curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
+    curve_peaks peaks;
+    peaks.path = curve_along(ray, sources, index);
+    peaks.ray = ray;
+    peaks.curve = &sources->curve_list[index];
+    const curve_path *const path = &peaks.path;
+    peaks.span2 = 4.0f * dot3(ray->span, ray->span);
+    const floatv per_length = 0.5f * twice_inverse_sqrt_(peaks.span2);
+    const floatv along = path->along.slope * per_length, across = path->across.slope * per_length;
+    const floatv normal = path->normal.slope * per_length;
+    floatv x_first, x_second;
+    if (path->is_straight) {
+        // The foot of the common perpendicular.
+        const floatv climb = fma(along, path->velocity_along, across * path->velocity_across);
+        const floatv to_origin = fma(path->along.at, along, fma(path->across.at, across, path->normal.at * normal));
+        const floatv speed2 = fma(-climb, climb, splat(1.0f / max(path->inverse_speed2, 1e-36f)));
+        const floatv foot = fma(path->along.at, path->velocity_along, path->across.at * path->velocity_across);
+        x_first = clamp(fma(-climb, to_origin, foot) * inverse(max(speed2, 1e-36f)), -0.5f, 0.5f);
+        x_second = x_first;
+        peaks.are_two = x_first > x_second;
+    } else {
+        // The cubic of the parabola seen along the ray, from its vertex, in units of the bend.
+        const float per_bend = 1.0f / path->bend, turn = path->velocity_along * per_bend;
+        const floatv x = fma(path->along.at, splat(per_bend), splat(turn * path->vertex));
+        const floatv y = fma(path->across.at, splat(per_bend), splat(path->vertex * path->vertex));
+        const floatv to_origin = fma(x, along, fma(y, across, path->normal.at * per_bend * normal));
+        const floatv x0 = fma(-to_origin, along, x), y0 = fma(-to_origin, across, y);
+        const floatv flat = max(fma(along, along, normal * normal), 1e-3f);
+        const floatv per_flat = inverse(flat);
+        const floatv shift = 0.5f * turn * along * across * per_flat;
+        const floatv linear_term = fma(splat(0.5f * turn * turn), fma(across, across, normal * normal), -y0) * per_flat;
+        const floatv last_term = -0.5f * turn * x0 * per_flat;
+        const floatv p = fma(-shift, shift, linear_term * (1.0f / 3.0f));
+        const floatv h = 0.5f * fma(shift, fma(-2.0f * shift, shift, linear_term), last_term);
+        const intv has_three = least_and_greatest_root(p, h, &x_first, &x_second);
+        x_first = clamp(x_first + shift - path->vertex, -0.5f, 0.5f);
+        x_second = clamp(x_second + shift - path->vertex, -0.5f, 0.5f);
+        peaks.are_two = has_three & (x_second - x_first > 1e-3f);
+    }
+    peaks.first = closest_to_core(path, peaks.span2, x_first, &peaks.first_distance2);
+    peaks.second = closest_to_core(path, peaks.span2, x_second, &peaks.second_distance2);
+    peaks.beyond_first = beyond_end(path, -0.5f);
+    peaks.beyond_last = beyond_end(path, 0.5f);
+    return peaks;
+}
+
+// L(s) - C(1/2 + x) in the curve's frame, doubled.
+INLINE float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
+    __global const Curve *const curve = peaks->curve;
+    const finev back = to_finev(-x);
+    const fine3v from_middle = fine_between(peaks->ray, s, curve->middle, curve->middle_rest);
+    const fine3v velocity = fine3(curve->velocity, curve->velocity_rest);
+    const fine3v second = fine3(curve->second, curve->second_rest);
+    // C(1/2) - C(1/2 + x) = -x (C'(1/2) + x C2)
+    const fine3v chord = fine_fma3(second, -back, velocity);
+    const float3v offset = from_fine3(fine_fma3(chord, back, from_middle));
+    const float3v in_frame = {2.0f * dot3(offset, uniform3(curve->along)), 2.0f * dot3(offset, uniform3(curve->across)),
+                              2.0f * dot3(offset, uniform3(curve->normal))};
+    return in_frame;
+}
+
+// The curve beside a point of the ray: the path from there on, seen from the nearest point of the curve.
+typedef struct {
+    curve_path path;
+    floatv core;
+    bool is_polished; // whether roots of the cubic are improved
+    RootCounts counts;
+} curve_near;
+
+// Whether the roots of the cubic have too few digits for such a squared distance. They lose as many as the parabola's
+// vertex is far from the curve's middle.
+bool needs_polish(const curve_path *const path, const floatv distance2) {
+#ifdef COARSE
+    const float size = fabs(path->velocity_along) + fabs(path->velocity_across) + path->bend;
+    const float error = 3e-5f * (1.0f + fabs(path->vertex)) * size;
+    return any_lane(distance2 < error * error);
+#else
+    return true;
+#endif
+}
+
+// Moves a core point C(1/2 + x), from which `offset` begins, to the nearest one that float32 can name: the cubic has
+// missed it by some digits.
+INLINE floatv nearest_core(const curve_path *const path, const floatv x, float3v *const offset) {
+    const floatv velocity_across = curve_velocity_across(path, x);
+    const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
+    const floatv facing = max(fma(-2.0f * path->bend, offset->y, speed2), max(0.1f * speed2, 1e-30f));
+    const floatv behind = fma(offset->x, path->velocity_along, offset->y * velocity_across);
+    const floatv missed = clamp(behind * inverse(facing), -1e-5f, 1e-5f);
+    const floatv nearest = select(x, clamp(x + missed, -0.5f, 0.5f), fabs(x) < 0.5f);
+    const floatv moved = nearest - x;
+    offset->x -= path->velocity_along * moved;
+    offset->y -= fma(splat(path->bend), moved, velocity_across) * moved;
+    return nearest;
+}
+
+INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
+                                 floatv *const base) {
+    const curve_path *const path = &peaks->path;
+    const floatv per_span2 = inverse(peaks->span2);
+    const Peak first = {peaks->first, peaks->first_distance2 * per_span2};
+    const Peak second = {peaks->second, peaks->second_distance2 * per_span2};
+    const floatv to_first = first.re - clamp(first.re, from, to), to_second = second.re - clamp(second.re, from, to);
+    const intv is_second = fma(to_second, to_second, second.im) < fma(to_first, to_first, first.im);
+    *base = clamp(select(first.re, second.re, is_second), from, to);
+
+    const curve_point point = curve_point_at(path, *base);
+    floatv distance2;
+    floatv x = nearest_on_curve(path, &point, &distance2);
+    const curve_offset seen = offset_from_curve(path, &point, x);
+    float3v offset = {seen.along, seen.across, point.normal};
+    const float3v from_middle = {point.along, point.across, point.normal};
+    const floatv size2 = dot3(from_middle, from_middle) + path->velocity_along * path->velocity_along;
+    if (any_lane(distance2 < 1e-3f * size2)) {
+        offset = offset_from_core(peaks, *base, x);
+        x = nearest_core(path, x, &offset);
+        distance2 = dot3(offset, offset);
+    }
+    const floatv velocity_across = curve_velocity_across(path, x);
+    const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
+    const floatv facing = fma(-2.0f * path->bend, offset.y, speed2);
+    const floatv climb = fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across);
+    const floatv slid = climb * climb * inverse(max(max(facing, 1e-3f * speed2), 1e-30f));
+    const floatv curvature = max(select(peaks->span2, peaks->span2 - slid, fabs(x) < 0.5f), 1e-6f * peaks->span2);
+    const float3v span = {path->along.slope, path->across.slope, path->normal.slope};
+    const floatv slope = dot3(offset, span);
+    const floatv per_curvature = inverse(curvature);
+    const floatv softened = distance2 + path->softening2;
+    const floatv lowest = max(fma(-slope * per_curvature, slope, softened), 1e-3f * softened);
+    peak->re = -slope * per_curvature;
+    peak->im = 0.5f * twice_sqrt(fma(lowest, per_curvature, 0.5f * path->floor2 * per_span2));
+
+    const intv is_thin = (lowest < path->floor2) & (path->floor2 < 1e-6f * size2);
+    curve_near near = {*path, x, needs_polish(path, lowest), {true, true}};
+    near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2, path->is_square) - lowest, is_thin);
+    near.path.floor2 = select(path->floor2, 0.5f * path->floor2, is_thin);
+    near.path.along.at = offset.x;
+    near.path.across.at = offset.y;
+    near.path.normal.at = offset.z;
+    near.path.p.at = point.p;
+    near.path.h.at = point.h;
+    return near;
+}
+
+// Looks which numbers of roots occur at any node, so that no node has to ask.
+INLINE void curve_look_ahead(curve_near *const near, const floatv *const left, const floatv *const right,
+                             const uint count) {
+    intv has_three = left[0] != left[0], has_one = has_three;
+    for (uint k = 0; k < count; ++k) {
+        const Linear p = near->path.p, h = near->path.h;
+        const intv left_three = has_three_roots(linear_at(p, left[k]), linear_at(h, left[k]));
+        const intv right_three = has_three_roots(linear_at(p, right[k]), linear_at(h, right[k]));
+        has_three |= left_three | right_three;
+        has_one |= !(left_three & right_three);
+    }
+    near->counts.one = any_lane(has_one);
+    near->counts.three = any_lane(has_three);
+}
+
+// A nearest point between the ends, improved by a Newton step on the derivative of the distance: close to the core,
+// from where it is seen, that has more digits than the cubic.
+INLINE floatv polished(const curve_path *const path, const curve_point *const point, const floatv x) {
+    const curve_offset offset = offset_from_curve(path, point, x);
+    const floatv velocity_across = curve_velocity_across(path, x);
+    const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
+    const floatv facing = max(fma(-2.0f * path->bend, offset.across, speed2), max(0.1f * speed2, 1e-30f));
+    const floatv behind = fma(offset.along, path->velocity_along, offset.across * velocity_across);
+    return select(x, clamp(fma(behind, inverse(facing), x), -0.5f, 0.5f), fabs(x) < 0.5f);
+}
+
+// The field at s = base + x.
+INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
+    curve_point point = curve_point_at(&near->path, x);
+    point.core = near->core;
+    floatv distance2;
+    floatv nearest = nearest_of_roots(&near->path, &point, near->counts, &distance2);
+    if (near->is_polished) {
+        nearest = polished(&near->path, &point, nearest);
+        distance2 = min(distance2, curve_distance2(&near->path, &point, nearest));
+    }
+    const floatv per_distance = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
+    const floatv field = profiled(per_distance, near->path.is_square);
+    return near->path.spline_count ? field * curve_intensity(&near->path, nearest) : field;
+}

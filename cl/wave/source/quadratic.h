@@ -1,0 +1,73 @@
+// Squared distance from the points of a ray to a fixed point, or to a line seen along it: a quadratic in s, kept as
+// (slope s + offset)^2 + least, in which nothing cancels near the least distance.
+#pragma once
+#include "../../fine.h"
+#include "../../roots.h"
+#include "../../view.h"
+
+typedef struct {
+    floatv slope;
+    floatv offset;
+    floatv least; // never 0: its root may be divided by
+} Quadratic;
+
+// |start + s span|^2 for a span of length `slope`.
+INLINE Quadratic squared_length_along(const float3v start, const float3v span, const floatv slope) {
+    const floatv per_slope = inverse(slope);
+    const floatv ahead = -dot3(start, span) * per_slope; // to the nearest point, a length
+    const float3v closest = fma3(span, ahead * per_slope, start);
+    const Quadratic q = {slope, -ahead, max(dot3(closest, closest), 1e-30f)};
+    return q;
+}
+
+// The squared length of what stands at the parameter of the least, which float32 has missed by a little: without what
+// lies along the span. Never 0.
+floatv squared_length_beside(const Quadratic *const q, const float3v start, const float3v span) {
+    const floatv per_slope = inverse(q->slope);
+    const floatv missed = clamp(-dot3(start, span) * per_slope * per_slope, -1e-4f, 1e-4f);
+    const float3v beside = fma3(span, missed, start);
+    return max(dot3(beside, beside), 1e-30f);
+}
+
+floatv length3(const float3v v) {
+    return 0.5f * twice_sqrt(max(dot3(v, v), 1e-36f));
+}
+
+// The parameter s of the least.
+floatv nearest_along(const Quadratic *const q) {
+    return -q->offset * inverse(q->slope);
+}
+
+// The same with all lengths doubled, softened.
+Quadratic doubled(const Quadratic q, const floatv softening2) {
+    const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, 4.0f * (q.least + softening2)};
+    return d;
+}
+
+floatv quadratic_at(const Quadratic *const q, const floatv s) {
+    const floatv x = fma(q->slope, s, q->offset);
+    return fma(x, x, q->least);
+}
+
+// From a ray to a point.
+INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, const float4 point_rest) {
+    const float3v from_point = subtract3(ray->origin, uniform3(point));
+    Quadratic distance2 = squared_length_along(from_point, ray->span, ray->length);
+    const fine3v closest = fine_between(ray, nearest_along(&distance2), point, point_rest);
+    distance2.least = squared_length_beside(&distance2, from_fine3(closest), ray->span);
+    return doubled(distance2, ray->softening2);
+}
+
+// From a ray to a line: that of P is |(P - M) x D|, a cross product instead of the difference of squares that Watanabe,
+// Abe, Konno 2015, eq. 3 prints, which cancels near the line.
+INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, const float4 point_rest,
+                                   const float4 direction, const float4 direction_rest) {
+    const float3v along = uniform3(direction);
+    const float3v from_point = subtract3(ray->origin, uniform3(point));
+    const float3v span = cross3(ray->span, along);
+    Quadratic distance2 = squared_length_along(cross3(from_point, along), span, length3(span));
+    const fine3v closest = fine_between(ray, nearest_along(&distance2), point, point_rest);
+    const float3v from_line = from_fine3(fine_cross3(closest, fine3(direction, direction_rest)));
+    distance2.least = squared_length_beside(&distance2, from_line, span);
+    return doubled(distance2, ray->softening2);
+}

@@ -1,0 +1,16 @@
+// Local intensity S(t): a clamped uniform quadratic B-spline (Watanabe, Abe, Konno 2015, eq. 14-16), which the host
+// cuts into its polynomial pieces.
+#pragma once
+#include "../../lanes.h"
+#include "../types.h"
+
+floatv spline_at(__global const SplinePiece *const pieces, const uint count, const floatv t) {
+    const floatv scaled = clamp(t, splat(0.0f), splat(1.0f)) * (float)count;
+    const intv piece = clamp(to_intv_down(scaled), (intv)(0), (intv)((int)count - 1));
+    const floatv x = scaled - to_floatv(piece);
+    __global const float *const values = (__global const float *)pieces;
+    const floatv c0 = gather(values, 4 * piece);
+    const floatv c1 = gather(values, 4 * piece + 1);
+    const floatv c2 = gather(values, 4 * piece + 2);
+    return fma(fma(c2, x, c1), x, c0);
+}

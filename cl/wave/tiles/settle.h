@@ -1,0 +1,68 @@
+#pragma each_kind
+// Settles the light of one source of a KIND on a tile: whether it is smooth there, so that its values at the nodes tell
+// all others.
+
+#ifdef DEPTH
+// The field where the ray ends.
+INLINE floatv KIND_at_end(const Ray *const ray, const Sources *const sources, const uint index) {
+    const KIND_path path = KIND_along(ray, sources, index);
+    return KIND_field(&path, ray->end);
+}
+#endif
+
+// The light of one source at the nodes of a tile, given to the tile's light if it is smooth there. Whether it is.
+INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, const float end_error, const uint index,
+                        __local TileMemory *const memory, uint *const integrals) {
+    meet();
+    for (uint round = 0; round < TILE_ROUNDS; ++round) {
+        const Clearance clearance = KIND_clearance(&rays->nodes[round], task->sources, index, task->pass->pixel_step);
+        const float least = LEAST_CLEARANCE * (float)task->pass->size;
+        show(least * least - clearance.distance2, first_ray(round), memory->excess);
+#if KIND_HAS(parts)
+        for (uint k = 0; k < PLACES_SEEN; ++k)
+            show(clearance.seen[k], first_ray(round), memory->seen[k]);
+#endif
+    }
+    meet();
+    if (!none_is_positive(memory->excess))
+        return false;
+#if KIND_HAS(parts)
+    if (!all_see_one_part(memory->seen))
+        return false;
+#endif
+    meet();
+    for (uint round = 0; round < TILE_ROUNDS; ++round) {
+        const floatv integral = KIND_integral(&rays->nodes[round], task->sources, index, task->quadrature);
+        show(integral, first_ray(round), memory->integrals);
+        *integrals += LANES;
+#ifdef DEPTH
+        if (end_error > 0.0f) {
+            const floatv at_end = KIND_at_end(&rays->nodes[round], task->sources, index);
+            const floatv light_at_end = at_end * decay_at(task->quadrature->decay, rays->nodes[round].end);
+            const floatv excess =
+                fma(splat(END_ERROR_WEIGHT * end_error), fabs(light_at_end), -MOST_ERROR(task->pass) * fabs(integral));
+            show(excess, first_ray(round), memory->excess);
+        }
+#endif
+    }
+    meet();
+#ifdef DEPTH
+    if (end_error > 0.0f && !none_is_positive(memory->excess))
+        return false;
+#endif
+    if (!seems_smooth(task->pass, memory->integrals))
+        return false;
+    for (uint round = 0; round < TILE_ROUNDS; ++round) {
+        const floatv truth = KIND_integral(&rays->tests[round], task->sources, index, task->quadrature);
+        const floatv seen = interpolate(memory->integrals, &rays->down[round], &rays->across[round]);
+        show(fabs(seen - truth) - MOST_ERROR(task->pass) * fabs(truth), first_ray(round), memory->excess);
+        *integrals += LANES;
+    }
+    meet();
+    if (!none_is_positive(memory->excess))
+        return false;
+    const float4 emission = KIND_emission(task->sources, index);
+    for (uint round = 0; round < TILE_ROUNDS; ++round)
+        add_light(emission, shown(first_ray(round), memory->integrals), first_ray(round), memory->light);
+    return true;
+}

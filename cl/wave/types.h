@@ -1,0 +1,65 @@
+// The structs of the wave that cross from the host to the device and are not a kind's own; those stand in the kinds'
+// headers. src/pack/layout.rs mirrors them.
+//
+// Positions are seen from the eye (world axes, world units): float32 then resolves best where the rays are. What
+// float32 leaves of a number stands in a field named `rest` (fine.h).
+#pragma once
+#include "../check_size.h"
+
+// What is integrated along every ray, and how well.
+typedef struct {
+    float softening2;       // squared softening radius
+    float decay_strength;   // alpha / beta; 1 without decay
+    float decay_beta;       // 0 without decay
+    float decay_per_beta;   // 1 / beta; 0 without decay
+    float smooth_threshold; // method exact: how large unresolved coefficients may be, of the integral,
+    float kinked_threshold; // and where the field along a ray has kinks
+    uint node_count;        // nodes of the quadrature
+    uint padding;
+} Integrand;
+CHECK_SIZE(Integrand, SIZEOF_INTEGRAND);
+
+// Which part of each list of sources a launch takes. A kind has the same number here and in kinds.h.
+typedef struct {
+    uint begin[KIND_COUNT], end[KIND_COUNT];
+} Launch;
+CHECK_SIZE(Launch, SIZEOF_LAUNCH);
+
+// One pass over tiles of one size, squares of pixels. The first has the largest, each of the others what the one before
+// left open, in quarters.
+typedef struct {
+    uint size;                // of a tile, pixels
+    uint inner, parent_inner; // nodes are the pixels 0, inner, size - 1 - inner and size - 1 of its rows and columns
+    uint level;               // 0: the first pass
+    uint is_last;             // 1: what is still open is computed pixel by pixel
+    uint columns, tile_count; // first pass: tiles in a row of tiles, and in all
+    uint read_from;           // where the list of open tiles has those of the pass before
+    uint write_to;            // where it gets this one's
+    uint word_count;          // words of 32 sources
+    float pixel_step;         // from a pixel to its neighbour, world units on the projection plane
+    float most_odd;   // how large an odd and an even highest coefficient of an interpolation may be, of the least
+    float most_even;  // value; else it is not put to the test
+    float most_error; // and how large its relative error in the test
+} TilePass;
+CHECK_SIZE(TilePass, SIZEOF_TILEPASS);
+
+// A ray that is no pixel's: origin S, span E - S.
+typedef struct {
+    float4 origin, origin_rest;
+    float4 span, span_rest;
+} RayRecord;
+CHECK_SIZE(RayRecord, SIZEOF_RAYRECORD);
+
+// A quadrature node: parameter s, and its weight times the decay zeta(s).
+typedef struct {
+    float s;
+    float weight;
+} Node;
+CHECK_SIZE(Node, SIZEOF_NODE);
+
+// One piece of a quadratic B-spline: S = c0 + c1 x + c2 x^2, x in [0,1] over the piece.
+typedef struct {
+    float c0, c1, c2;
+    float padding;
+} SplinePiece;
+CHECK_SIZE(SplinePiece, SIZEOF_SPLINEPIECE);

@@ -1,0 +1,30 @@
+//! What a frame cost.
+
+use std::time::Duration;
+
+/// What a frame cost. The numbers mean the same for every engine, device and method.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[non_exhaustive]
+pub struct FrameCost {
+    /// Time that the device worked on kernels; of several devices, the longest.
+    pub kernel: Duration,
+    /// Integrals: pairs of a ray and a source.
+    pub integrals: u64,
+    /// Samples of fields. 0 where they were not counted: the method `exact` takes as many as it needs and counts them
+    /// only if [`RendererOptions::counts_samples`](crate::RendererOptions::counts_samples) is set.
+    pub samples: u64,
+    /// Launches of kernels.
+    pub launches: u32,
+}
+
+impl FrameCost {
+    /// Adds the cost of a part that was drawn beside this one, by another device.
+    pub(crate) fn beside(self, other: Self) -> Self {
+        Self {
+            kernel: self.kernel.max(other.kernel),
+            integrals: self.integrals + other.integrals,
+            samples: self.samples + other.samples,
+            launches: self.launches + other.launches,
+        }
+    }
+}

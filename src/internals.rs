@@ -1,0 +1,134 @@
+//! What the crate's own tests and benchmarks look at. No part of the interface: it may change with any version.
+//!
+//! What can run any kernel, or change what kernels do, is `unsafe`: a kernel may write anywhere.
+#![allow(missing_docs, unsafe_code)]
+
+use std::time::Duration;
+
+pub use crate::opencl::{
+    Argument, Compute, DeviceBuffer, DeviceStruct, Discovery, Film, FilmFormat, FilmPart, Kernel,
+    OpenClDevice, Pixel, Program, SHARED, Sources, StructLayout, Uploaded, discover,
+};
+pub use crate::reference::{
+    CurveField, Field, Integrand, Sample, Source, b_spline, exact, integrate, simpson, sources,
+};
+pub use crate::scene::ViewPlane;
+pub use crate::wave::{Rule, Wave, pack};
+
+use crate::error::Result;
+use crate::opencl::{RendererOptions, run_time};
+use crate::render::Renderer;
+use crate::scene::Scene;
+use crate::scene::kinds::KIND_COUNT;
+use crate::wave;
+
+/// The names of all kinds of source, in the order of the table.
+pub const KINDS: [&str; KIND_COUNT] = crate::scene::KINDS;
+
+/// Adds options for the OpenCL compiler.
+///
+/// # Safety
+/// Kernels that are built with them stay within their memory.
+#[must_use]
+pub unsafe fn with_compiler_options(options: &RendererOptions, more: &str) -> RendererOptions {
+    RendererOptions {
+        compiler_options: more.to_owned(),
+        ..options.clone()
+    }
+}
+
+/// Integrates by this rule, whatever the tolerance; nothing happens on several devices and on the reference.
+pub fn set_rule(renderer: &mut Renderer, rule: Rule) {
+    if let Some(wave) = renderer.wave() {
+        wave.set_rule(Some(rule));
+    }
+}
+
+/// The resolved text of a file of `cl/`, with the kinds of source that are named.
+#[must_use]
+pub fn resolve(file: &str, kinds: &[&str]) -> String {
+    wave::resolve(file, &present(kinds))
+}
+
+fn present(kinds: &[&str]) -> wave::Present {
+    KINDS.map(|kind| kinds.contains(&kind))
+}
+
+/// Builds a text that may include files of `cl/`, with the kinds of source that are named; `name` stands for it in the
+/// compiler's log.
+///
+/// # Errors
+/// [`crate::Error::Build`] with the compiler's log, places as `cl/FILE:LINE`.
+pub fn build_text(
+    compute: &Compute,
+    name: &str,
+    text: &str,
+    kinds: &[&str],
+    options: &RendererOptions,
+) -> Result<Program> {
+    let text = wave::resolve_text(name, text, &present(kinds));
+    let definitions = wave::common_definitions(options.counts_samples);
+    Program::build(compute, text, &definitions, options)
+}
+
+/// Runs a kernel over `items` work-items, in groups of `group`, and waits for it: how long the device worked.
+///
+/// # Safety
+/// The kernel stays within the memory that it is given.
+///
+/// # Errors
+/// [`crate::Error::Device`] if an argument or the launch is refused.
+pub unsafe fn run(
+    compute: &Compute,
+    program: &Program,
+    kernel: &str,
+    arguments: &[(&str, &dyn Argument)],
+    items: usize,
+    group: usize,
+) -> Result<Duration> {
+    let kernel = program.kernel(kernel)?;
+    let event = kernel.launch(compute, arguments, items, group)?;
+    run_time(compute, &event)
+}
+
+/// Draws a whole frame of a valid scene into a film, as a renderer does, and waits for it.
+///
+/// # Errors
+/// As [`Renderer::render`].
+pub fn draw_wave(
+    wave: &mut Wave,
+    compute: &Compute,
+    scene: &Scene,
+    film: &mut Film,
+) -> Result<crate::FrameCost> {
+    let pixels = scene.image.pixels();
+    let plan = wave.plan(compute, scene, film.format())?;
+    film.reserve_band(compute, pixels, plan.grain())?;
+    wave.begin(compute, &plan, pixels)?;
+    wave.draw_unwatched(compute, &plan, film)?;
+    Ok(wave.cost())
+}
+
+/// Runs a kernel of another engine over all pixels of a film, a work-item for `lanes` of them, and waits for it. The film's
+/// parameters have the names of `cl/film.h`.
+///
+/// # Safety
+/// The kernel stays within the memory that it is given.
+///
+/// # Errors
+/// [`crate::Error::Device`] if an argument or the launch is refused.
+pub unsafe fn run_on_film(
+    compute: &Compute,
+    program: &Program,
+    kernel: &str,
+    arguments: &[(&str, &dyn Argument)],
+    film: &mut Film,
+    size: (u32, u32),
+) -> Result<Duration> {
+    let pixels = 0..size.0 * size.1;
+    let items = pixels.len().div_ceil(program.lanes as usize);
+    let on_film = film.arguments(compute, &pixels, size, true, true)?;
+    let arguments = [&on_film.named(), arguments].concat();
+    // SAFETY: the caller's promise.
+    unsafe { run(compute, program, kernel, &arguments, items, 16) }
+}

@@ -1,0 +1,465 @@
+//! The film: where light goes, linear RGBA by rows from the top left. Every engine draws into it in the same way, and
+//! does not know whose memory it is.
+//!
+//! Light is gathered in a buffer of float32. Where finished pixels are wanted as half floats or in an image, the last
+//! launch of a pixel stores it there instead (`cl/film.h`).
+
+use std::ops::{Deref, DerefMut, Range};
+
+use opencl3::memory::{CL_FLOAT, CL_HALF_FLOAT, CL_RGBA, ClMem, Image};
+use opencl3::types::cl_mem;
+
+use super::handle::Handle;
+use super::image::{create_image, read_image};
+use super::kernel::{Argument, RawMemory};
+use super::layout::device_struct;
+use super::{Compute, DeviceBuffer, DeviceType};
+use crate::error::{Error, Result};
+
+/// A pixel: linear RGBA.
+pub type Pixel = [f32; 4];
+
+device_struct! {
+    /// Which pixels a launch draws, and where they go.
+    FilmPart [24] {
+        first: u32 = 0,
+        count: u32 = 4,
+        slot: u32 = 8,
+        width: u32 = 12,
+        adds: u32 = 16,
+        is_last: u32 = 20,
+    }
+}
+
+/// What finished pixels are stored as. Kernels are built for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FilmFormat {
+    /// A buffer of float32.
+    Floats,
+    /// A buffer of half floats.
+    Halves,
+    /// An image, with channels of half floats or of float32.
+    Image {
+        /// Whether they are half floats.
+        has_halves: bool,
+    },
+}
+
+impl FilmFormat {
+    /// What the kernels' compiler is told.
+    pub fn definitions(self) -> &'static str {
+        match self {
+            Self::Floats => "",
+            Self::Halves => " -D HALVES -D HALF_RANGE",
+            Self::Image { has_halves: true } => " -D IMAGE -D HALF_RANGE",
+            Self::Image { has_halves: false } => " -D IMAGE",
+        }
+    }
+}
+
+/// Whose memory finished pixels go to.
+#[derive(Debug)]
+enum Target {
+    /// The film's own buffer.
+    Own,
+    /// A buffer of someone else, for all pixels.
+    Buffer(cl_mem),
+    /// Likewise, of half floats.
+    Halves(cl_mem),
+    /// An image of someone else, for all pixels.
+    Image { image: cl_mem, has_halves: bool },
+    /// The film's own, for tests of what hosts have.
+    OwnHalves(DeviceBuffer<u16>),
+    OwnImage(Handle<Image>),
+}
+
+/// Where light goes.
+#[derive(Debug)]
+pub struct Film {
+    /// Float32 pixels, if any were needed.
+    pixels: Option<DeviceBuffer<Pixel>>,
+    target: Target,
+    /// Number of the pixel in the buffer's first place.
+    origin: u32,
+    /// Whether the next engine adds its light to what is there.
+    adds: bool,
+    /// Whether another engine will add to what this one draws.
+    is_unfinished: bool,
+}
+
+// SAFETY: OpenCL's functions on memory objects may be called from any thread.
+unsafe impl Send for Film {}
+
+/// A larger buffer would gain nothing; 8192x8192 pixels fit.
+const MOST_BYTES: u64 = 1 << 30;
+
+impl Film {
+    /// A film of its own memory, made when it is first needed.
+    pub fn new() -> Self {
+        Self {
+            pixels: None,
+            target: Target::Own,
+            origin: 0,
+            adds: false,
+            is_unfinished: false,
+        }
+    }
+
+    /// A film of its own in another format, for so many pixels.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], [`Error::Device`].
+    pub fn in_format(
+        compute: &Compute,
+        format: FilmFormat,
+        width: u32,
+        height: u32,
+    ) -> Result<Self> {
+        let channels = 4 * width as usize * height as usize;
+        let target = match format {
+            FilmFormat::Floats => Target::Own,
+            FilmFormat::Halves => {
+                Target::OwnHalves(DeviceBuffer::new(compute, "the half floats", channels)?)
+            }
+            FilmFormat::Image { .. } => Target::OwnImage(create_image(compute, width, height)?),
+        };
+        Ok(Self {
+            target,
+            ..Self::new()
+        })
+    }
+
+    /// What kernels that draw into it are built for.
+    pub fn format(&self) -> FilmFormat {
+        match &self.target {
+            Target::Own | Target::Buffer(_) => FilmFormat::Floats,
+            Target::Halves(_) | Target::OwnHalves(_) => FilmFormat::Halves,
+            Target::Image { has_halves, .. } => FilmFormat::Image {
+                has_halves: *has_halves,
+            },
+            Target::OwnImage(_) => FilmFormat::Image { has_halves: false },
+        }
+    }
+
+    /// From now on light is added to what is there, if `adds`; else the next launches replace it.
+    pub fn add_to_what_is_there(&mut self, adds: bool) {
+        self.adds = adds;
+    }
+
+    /// Whether another engine will add to what is drawn now: pixels are not finished yet.
+    pub fn leave_unfinished(&mut self, is_unfinished: bool) {
+        self.is_unfinished = is_unfinished;
+    }
+
+    /// Makes sure of a buffer for `pixels` pixels, or for as many as the device's limits allow, a multiple of `grain`: how
+    /// many it is for.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], [`Error::Device`].
+    pub fn reserve_band(&mut self, compute: &Compute, pixels: usize, grain: u32) -> Result<usize> {
+        let grain = grain as usize;
+        let grains = (most_bytes(compute) as usize / size_of::<Pixel>() / grain).max(1);
+        let wanted = pixels.min(grains * grain);
+        self.reserve(compute, wanted)?;
+        Ok(wanted.max(1))
+    }
+
+    fn reserve(&mut self, compute: &Compute, pixels: usize) -> Result<()> {
+        let is_short = |buffer: &DeviceBuffer<Pixel>| buffer.len() < pixels;
+        if self.pixels.as_ref().is_none_or(is_short) {
+            self.pixels = None;
+            self.pixels = Some(DeviceBuffer::image(compute, "the image", pixels)?);
+        }
+        Ok(())
+    }
+
+    /// The next launches begin at this pixel, which goes to the buffer's first place.
+    pub fn begin_at(&mut self, pixel: u32) {
+        self.origin = pixel;
+    }
+
+    /// The arguments of a launch on some pixels of an image of this size: the first and the last launch of an engine on
+    /// them are known.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`] if light must be gathered and there is no memory for it.
+    pub(crate) fn arguments(
+        &mut self,
+        compute: &Compute,
+        pixels: &Range<u32>,
+        (width, height): (u32, u32),
+        is_first: bool,
+        is_last: bool,
+    ) -> Result<FilmArguments> {
+        let part = FilmPart {
+            first: pixels.start,
+            count: pixels.end - pixels.start,
+            slot: pixels.start - self.origin,
+            width,
+            adds: u32::from(self.adds || !is_first),
+            is_last: u32::from(is_last && !self.is_unfinished),
+        };
+        let is_whole = part.adds == 0 && part.is_last == 1;
+        let gathered = match self.target {
+            Target::Buffer(buffer) => buffer,
+            Target::Own => self.pixels()?.handle(),
+            _ if is_whole => std::ptr::null_mut(),
+            _ => {
+                self.reserve(compute, width as usize * height as usize)?;
+                self.pixels()?.handle()
+            }
+        };
+        let image = match &self.target {
+            Target::Own | Target::Buffer(_) => None,
+            Target::Halves(memory) | Target::Image { image: memory, .. } => Some(*memory),
+            Target::OwnHalves(halves) => Some(halves.handle()),
+            Target::OwnImage(image) => Some(image.get()),
+        };
+        Ok(FilmArguments {
+            part,
+            pixels: RawMemory(gathered),
+            image: image.map(RawMemory),
+        })
+    }
+
+    fn pixels(&self) -> Result<&DeviceBuffer<Pixel>> {
+        self.pixels
+            .as_ref()
+            .ok_or_else(|| Error::OutOfMemory("the film has no buffer".to_owned()))
+    }
+
+    /// Copies the first pixels of the buffer to `target`, after all earlier commands of the queue, and waits for it.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub fn read(&self, compute: &Compute, target: &mut [Pixel]) -> Result<()> {
+        match &self.target {
+            Target::OwnHalves(halves) => {
+                let mut values = vec![0_u16; 4 * target.len()];
+                halves.read(compute, &mut values)?;
+                for (channel, bits) in target.as_flattened_mut().iter_mut().zip(values) {
+                    *channel = half_to_float(bits);
+                }
+                Ok(())
+            }
+            Target::OwnImage(image) => read_image(compute, image, target),
+            _ => self.pixels()?.read(compute, target),
+        }
+    }
+
+    /// Likewise so many pixels, in rows of `row` values that begin `stride` values apart.
+    pub(crate) fn read_rows(
+        &self,
+        compute: &Compute,
+        pixels: usize,
+        row: usize,
+        target: &mut [f32],
+        stride: usize,
+    ) -> Result<()> {
+        let buffer = self.pixels()?;
+        buffer.read_rows(compute, pixels, row, target, stride)
+    }
+
+    /// Maps the first pixels into host memory, after all earlier commands of the queue: on a CPU, nothing is copied.
+    pub(crate) fn map<'a>(
+        &'a mut self,
+        compute: &'a Compute,
+        pixels: usize,
+    ) -> Result<MappedFilm<'a>> {
+        Ok(MappedFilm {
+            pointer: self.pixels()?.map(compute, pixels)?,
+            pixels,
+            film: self,
+            compute,
+        })
+    }
+
+    /// Whether the device itself can write these pixels of the caller: its memory is the host's, and they begin as kernels
+    /// want them.
+    pub(crate) fn reaches(compute: &Compute, target: &[Pixel]) -> bool {
+        let device = compute.device();
+        !target.is_empty()
+            && device.device_type == DeviceType::Cpu
+            && device.shares_host_memory
+            && target.as_ptr().addr().is_multiple_of(size_of::<Pixel>())
+            && size_of_val(target) as u64 <= most_bytes(compute)
+    }
+
+    /// Puts the caller's memory in the place of the buffer, as long as the guard lives.
+    pub(crate) fn lend<'a>(
+        &'a mut self,
+        compute: &'a Compute,
+        target: &'a mut [Pixel],
+    ) -> Result<FilmInPlace<'a>> {
+        // SAFETY: the guard drops the buffer before the borrow ends, when the device is done with it.
+        let buffer = unsafe { DeviceBuffer::around(compute, target) }?;
+        Ok(FilmInPlace {
+            own: self.pixels.replace(buffer),
+            film: self,
+            compute,
+        })
+    }
+
+    /// A film in someone else's buffer of float32, for all pixels. What is gathered otherwise goes to `self`'s memory.
+    pub(super) fn aim_at_buffer(&mut self, buffer: cl_mem) {
+        self.target = Target::Buffer(buffer);
+    }
+
+    pub(super) fn aim_at_halves(&mut self, buffer: cl_mem) {
+        self.target = Target::Halves(buffer);
+    }
+
+    pub(super) fn aim_at_image(&mut self, image: cl_mem, has_halves: bool) {
+        self.target = Target::Image { image, has_halves };
+    }
+
+    /// Light goes to the film's own buffer again.
+    pub(crate) fn aim_at_own(&mut self) {
+        self.target = Target::Own;
+    }
+}
+
+impl Default for Film {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Of the film's own buffer.
+fn most_bytes(compute: &Compute) -> u64 {
+    let device = compute.device();
+    // A quarter of the memory leaves room for the sources and for everyone else.
+    let bytes = device.max_allocation_bytes.min(device.memory_bytes / 4);
+    bytes.min(MOST_BYTES)
+}
+
+/// What a kernel is told of the film.
+#[derive(Debug)]
+pub(crate) struct FilmArguments {
+    pub part: FilmPart,
+    pixels: RawMemory,
+    image: Option<RawMemory>,
+}
+
+impl FilmArguments {
+    /// By the names that they have in `cl/film.h`.
+    pub(crate) fn named(&self) -> Vec<(&'static str, &dyn Argument)> {
+        let mut named: Vec<(&str, &dyn Argument)> =
+            vec![("part", &self.part), ("pixels", &self.pixels)];
+        if let Some(image) = &self.image {
+            named.push(("image", image));
+        }
+        named
+    }
+}
+
+/// A film's pixels in host memory, readable until it is dropped.
+#[derive(Debug)]
+pub(crate) struct MappedFilm<'a> {
+    pointer: *const f32,
+    pixels: usize,
+    film: &'a mut Film,
+    compute: &'a Compute,
+}
+
+impl Deref for MappedFilm<'_> {
+    type Target = [f32];
+
+    fn deref(&self) -> &[f32] {
+        // SAFETY: the driver mapped 4 floats for each pixel here, for reading, until the guard is dropped.
+        unsafe { std::slice::from_raw_parts(self.pointer, 4 * self.pixels) }
+    }
+}
+
+impl Drop for MappedFilm<'_> {
+    fn drop(&mut self) {
+        let pixels = self.film.pixels.take();
+        // A driver that refuses may have lost the device: the next call on it will say so. If it has not, the next image
+        // needs a buffer of its own, since nothing may be written to one that is mapped.
+        self.film.pixels = pixels.filter(|it| it.unmap(self.compute, self.pointer).is_ok());
+    }
+}
+
+/// A film while its buffer is the caller's memory; dropped when nothing uses that any more.
+#[derive(Debug)]
+pub(crate) struct FilmInPlace<'a> {
+    film: &'a mut Film,
+    compute: &'a Compute,
+    own: Option<DeviceBuffer<Pixel>>,
+}
+
+impl FilmInPlace<'_> {
+    /// Lets the host see what the device wrote: only a mapping makes sure of that.
+    pub(crate) fn show_host(&self, pixels: usize) -> Result<()> {
+        let buffer = self.film.pixels()?;
+        let pointer = buffer.map(self.compute, pixels)?;
+        buffer.unmap(self.compute, pointer)
+    }
+}
+
+impl Deref for FilmInPlace<'_> {
+    type Target = Film;
+
+    fn deref(&self) -> &Film {
+        self.film
+    }
+}
+
+impl DerefMut for FilmInPlace<'_> {
+    fn deref_mut(&mut self) -> &mut Film {
+        self.film
+    }
+}
+
+impl Drop for FilmInPlace<'_> {
+    fn drop(&mut self) {
+        // Also after an error, or a panic of `progress`, launches may be under way. A driver that refuses has lost the
+        // device, and these with it.
+        let _ = self.compute.queue.finish();
+        self.film.pixels = self.own.take();
+    }
+}
+
+/// A half float (IEEE 754 binary16) as float32.
+fn half_to_float(bits: u16) -> f32 {
+    let (exponent, fraction) = (bits >> 10 & 0x1f, f32::from(bits & 0x3ff) / 1024.0);
+    let magnitude = match exponent {
+        0 => fraction * 2.0_f32.powi(-14),
+        31 if fraction == 0.0 => f32::INFINITY,
+        31 => f32::NAN,
+        exponent => (1.0 + fraction) * 2.0_f32.powi(i32::from(exponent) - 15),
+    };
+    if bits >> 15 == 1 { -magnitude } else { magnitude }
+}
+
+/// Whether an image's channels are half floats or float32; `None`: neither, or not RGBA.
+pub(super) fn halves_of(order: u32, channel_type: u32) -> Option<bool> {
+    match (order, channel_type) {
+        (CL_RGBA, CL_FLOAT) => Some(false),
+        (CL_RGBA, CL_HALF_FLOAT) => Some(true),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::half_to_float;
+
+    #[test]
+    fn half_floats_are_read() {
+        let known = [
+            (0x3c00, 1.0),
+            (0xc000, -2.0),
+            (0x7bff, 65504.0),
+            (0x0400, 2.0_f32.powi(-14)),
+            (0x0001, 2.0_f32.powi(-24)),
+            (0x3555, 0.333_251_95),
+            (0x7c00, f32::INFINITY),
+            (0x0000, 0.0),
+        ];
+        for (bits, value) in known {
+            assert_eq!(half_to_float(bits), value, "{bits:#x}");
+        }
+        assert!(half_to_float(0x7e00).is_nan());
+    }
+}

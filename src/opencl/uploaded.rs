@@ -1,0 +1,164 @@
+//! Lists on the device that are uploaded only when they changed.
+
+use std::ptr;
+use std::sync::Arc;
+
+use bytemuck::Pod;
+use opencl3::memory::CL_MEM_READ_ONLY;
+use opencl3::types::cl_mem;
+
+use super::copies::Copies;
+use super::{Argument, Compute, DeviceBuffer};
+use crate::error::Result;
+
+/// A read-only list on the device that is uploaded only when it changed, and grows when it must.
+#[derive(Debug)]
+pub struct Uploaded<T> {
+    what: &'static str,
+    buffer: Option<DeviceBuffer<T>>,
+    /// What the device has, or is about to have.
+    contents: Arc<Vec<T>>,
+    copies: Copies<Arc<Vec<T>>>,
+    /// Whether the device has `contents`, or a copy of them is under way.
+    is_valid: bool,
+}
+
+impl<T: Pod + PartialEq> Uploaded<T> {
+    /// An empty list; `what` names the contents in errors.
+    pub fn new(what: &'static str) -> Self {
+        Self {
+            what,
+            buffer: None,
+            contents: Arc::default(),
+            copies: Copies::new(),
+            is_valid: false,
+        }
+    }
+
+    /// Makes the device's list equal to `data`, before the next command of the queue begins. It does not wait for that
+    /// (a wait costs a frame 45 us on PoCL 3.1): [`Uploaded::settle`] tells whether it went well.
+    ///
+    /// # Errors
+    /// As [`DeviceBuffer::new`] and [`DeviceBuffer::write`].
+    pub fn upload(&mut self, compute: &Compute, data: &[T]) -> Result<()> {
+        self.is_valid &= self.copies.reap();
+        if self.is_valid && *self.contents == data {
+            return Ok(());
+        }
+        self.is_valid = false;
+        match Arc::get_mut(&mut self.contents) {
+            Some(contents) => {
+                contents.clear();
+                contents.extend_from_slice(data);
+            }
+            None => self.contents = Arc::new(data.to_vec()), // the old ones are still being copied
+        }
+        let buffer = match self.buffer.take() {
+            Some(buffer) if buffer.len() >= data.len() => buffer,
+            _ => DeviceBuffer::with_flags(compute, self.what, data.len(), CL_MEM_READ_ONLY)?,
+        };
+        let buffer = self.buffer.insert(buffer);
+        if !data.is_empty() {
+            // SAFETY: the contents are neither changed nor freed while `copies` holds them.
+            let event = unsafe { buffer.begin_write(compute, &self.contents) }?;
+            self.copies.keep(event, Arc::clone(&self.contents));
+        }
+        self.is_valid = true;
+        Ok(())
+    }
+
+    /// Likewise, without a look at the data where the caller knows that they are what was uploaded last.
+    ///
+    /// # Errors
+    /// As [`Uploaded::upload`].
+    pub(crate) fn upload_unless(
+        &mut self,
+        is_known: bool,
+        compute: &Compute,
+        data: &[T],
+    ) -> Result<()> {
+        self.is_valid &= self.copies.reap();
+        match is_known && self.is_valid {
+            true => Ok(()),
+            false => self.upload(compute, data),
+        }
+    }
+
+    /// Waits for copies under way.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if a copy failed; the next upload repeats it.
+    pub fn settle(&mut self, compute: &Compute) -> Result<()> {
+        let outcome = self.copies.wait(compute);
+        self.is_valid &= outcome.is_ok();
+        outcome
+    }
+
+    /// The buffer's handle; null before the first upload.
+    pub(super) fn handle(&self) -> cl_mem {
+        self.buffer
+            .as_ref()
+            .map_or(ptr::null_mut(), DeviceBuffer::handle)
+    }
+}
+
+/// Values that are shared and never change, on the device; uploaded when others are given.
+#[derive(Debug)]
+pub struct UploadedShared<T> {
+    what: &'static str,
+    buffer: Option<DeviceBuffer<T>>,
+    /// What the device has, or is about to have.
+    contents: Option<Arc<Vec<T>>>,
+    copies: Copies<Arc<Vec<T>>>,
+}
+
+impl<T: Pod> UploadedShared<T> {
+    /// No values yet; `what` names them in errors.
+    pub(crate) fn new(what: &'static str) -> Self {
+        Self {
+            what,
+            buffer: None,
+            contents: None,
+            copies: Copies::new(),
+        }
+    }
+
+    /// Makes the device's values these before the next command of the queue begins; with `None`, those there stay.
+    pub(crate) fn upload(&mut self, compute: &Compute, values: Option<&Arc<Vec<T>>>) -> Result<()> {
+        if !self.copies.reap() {
+            self.contents = None;
+        }
+        let Some(values) = values else {
+            return Ok(());
+        };
+        let is_there = |there: &Arc<Vec<T>>| Arc::ptr_eq(there, values);
+        if self.contents.as_ref().is_some_and(is_there) {
+            return Ok(());
+        }
+        self.contents = None;
+        let buffer = match self.buffer.take() {
+            Some(buffer) if buffer.len() >= values.len() => buffer,
+            _ => DeviceBuffer::new(compute, self.what, values.len())?,
+        };
+        let buffer = self.buffer.insert(buffer);
+        // SAFETY: shared values never change, and `copies` keeps them.
+        let event = unsafe { buffer.begin_write(compute, values) }?;
+        self.copies.keep(event, Arc::clone(values));
+        self.contents = Some(Arc::clone(values));
+        Ok(())
+    }
+
+    /// Waits for copies under way. After one that failed, the next upload repeats it.
+    pub(crate) fn settle(&mut self, compute: &Compute) -> Result<()> {
+        let outcome = self.copies.wait(compute);
+        if outcome.is_err() {
+            self.contents = None;
+        }
+        outcome
+    }
+
+    /// The values, for kernels; null before the first upload.
+    pub(crate) fn argument(&self) -> &dyn Argument {
+        &self.buffer
+    }
+}

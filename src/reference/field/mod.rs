@@ -1,0 +1,79 @@
+//! Scalar fields in float64: distance to the core, and where along a ray it is least. A module for each kind of source.
+
+use glam::DVec3;
+
+use crate::scene::kinds::for_each_kind;
+use crate::scene::{Profile, Ray, Scene};
+
+macro_rules! field_modules {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        $(mod $kind;)*
+
+        /// Every source of a scene, part by part.
+        pub fn sources(scene: &Scene) -> Vec<Source> {
+            let mut sources = Vec::with_capacity(scene.source_count());
+            $(for source in &scene.$list {
+                source.add_parts(&mut |part| sources.push(part));
+            })*
+            sources
+        }
+    };
+}
+for_each_kind!(field_modules);
+
+pub use curve::{CurveField, b_spline};
+
+/// One sample of a field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Squared distance to the core, world units squared.
+    pub distance2: f64,
+    /// Local intensity of the core at its nearest point; 1 without a series.
+    pub intensity: f64,
+}
+
+/// What a field falls off from.
+pub trait Field: std::fmt::Debug + Send + Sync {
+    /// Samples the field at a point, without softening.
+    fn sample(&self, point: DVec3) -> Sample;
+
+    /// Appends the parameters s, inside `[0,1]` or not, at which the field peaks or may not be smooth along the ray.
+    fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>);
+}
+
+/// A part of a source: `emission` times the integral of its field.
+#[derive(Debug)]
+pub struct Source {
+    /// What the field falls off from.
+    pub field: Box<dyn Field>,
+    /// How it falls off.
+    pub profile: Profile,
+    /// Colour times coefficient, linear RGB.
+    pub emission: DVec3,
+}
+
+/// What the reference asks of every kind of source.
+trait Parts {
+    /// Calls `add` with each part of the source that glows.
+    fn add_parts(&self, add: &mut dyn FnMut(Source));
+}
+
+/// A sample of a core that is everywhere as bright.
+fn even(distance2: f64) -> Sample {
+    Sample {
+        distance2,
+        intensity: 1.0,
+    }
+}
+
+/// The parameter s at which a ray is nearest to a line; not a number if they are parallel.
+fn nearest_to_line(ray: &Ray, point: DVec3, direction: DVec3) -> f64 {
+    let across = |v: DVec3| v.cross(direction);
+    let span = across(ray.span);
+    across(point - ray.origin).dot(span) / span.length_squared()
+}
+
+/// The parameter s at which a ray crosses a plane (2010, eq. 10); not finite if they are parallel.
+fn crossing(ray: &Ray, point: DVec3, normal: DVec3) -> f64 {
+    (point - ray.origin).dot(normal) / ray.span.dot(normal)
+}

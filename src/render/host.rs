@@ -1,0 +1,81 @@
+//! Renderers on a host's own context and queue, which draw into its buffer or image.
+//!
+//! Kernels run on a queue of our own in the host's context, tied to the host's at both ends by events. So launches are timed
+//! also where the host's queue has no profiling, a queue out of order needs no barriers, and two markers are all that is put
+//! on the host's queue.
+#![allow(unsafe_code)] // hosts hand over handles that only they know to be alive
+
+use opencl3::command_queue::CommandQueue;
+use opencl3::context::Context;
+use opencl3::event::Event;
+use opencl3::types::{cl_command_queue, cl_context, cl_event};
+
+use super::one::{DeviceRenderer, no_host};
+use super::{Renderer, RendererBackend};
+use crate::error::Result;
+use crate::opencl::{HostLink, HostTarget, RendererOptions};
+use crate::scene::Scene;
+
+impl Renderer {
+    /// Makes a renderer on a host's context, for the device of the host's queue: it draws into the host's memory by
+    /// [`Renderer::enqueue`], and into its own as any other. It keeps a reference to both.
+    ///
+    /// # Errors
+    /// [`Error::Host`](crate::Error::Host) if the queue belongs to another context, or its device cannot render;
+    /// [`Error::Device`](crate::Error::Device).
+    pub fn on_host(context: &Context, queue: &CommandQueue) -> Result<Self> {
+        // SAFETY: the borrows keep both alive.
+        unsafe { Self::on_raw_host(context.get(), queue.get(), &RendererOptions::default()) }
+    }
+
+    /// Likewise, for handles as C has them.
+    ///
+    /// # Safety
+    /// Both are valid handles, which the caller holds a reference to.
+    ///
+    /// # Errors
+    /// As [`Renderer::on_host`].
+    pub unsafe fn on_raw_host(
+        context: cl_context,
+        queue: cl_command_queue,
+        options: &RendererOptions,
+    ) -> Result<Self> {
+        // SAFETY: the caller's promise.
+        let (compute, link) = unsafe { HostLink::open(context, queue) }?;
+        let renderer = DeviceRenderer::with_compute(compute, Some(link), options)?;
+        Ok(Self::with_backend(RendererBackend::OpenCl(Box::new(
+            renderer,
+        ))))
+    }
+
+    /// Enqueues a frame that is drawn into a host's buffer or image, and gives the event of its end, a marker on the
+    /// host's queue. The frame begins after `wait_list` and what is on the host's queue before it; what comes after it on
+    /// an in-order queue waits for it.
+    ///
+    /// The host's queue is flushed, never finished, and nothing here waits for it (but for the compiler, the first time
+    /// that a scene needs other kernels): what goes wrong on the device later shows at the event, and at the next call.
+    /// Dropping the renderer waits until the device has read what was uploaded.
+    ///
+    /// # Safety
+    /// Target and events are valid handles, which the caller holds a reference to. Until the event is over, nothing else
+    /// uses the target.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`]; [`Error::Host`](crate::Error::Host) if the renderer was made without a host, or target or
+    /// events do not fit: all that is checked before anything is enqueued.
+    pub unsafe fn enqueue(
+        &mut self,
+        scene: &Scene,
+        target: HostTarget,
+        wait_list: &[cl_event],
+    ) -> Result<Event> {
+        self.check(scene)?;
+        match &mut self.backend {
+            // SAFETY: the caller's promise.
+            RendererBackend::OpenCl(renderer) => unsafe {
+                renderer.enqueue(scene, target, wait_list)
+            },
+            RendererBackend::Several(_) | RendererBackend::Reference { .. } => Err(no_host()),
+        }
+    }
+}

@@ -1,0 +1,387 @@
+//! The renderer: one front for the OpenCL devices and the built-in reference.
+
+mod device;
+mod host;
+mod one;
+mod several;
+mod shares;
+
+use std::ops::{ControlFlow, Deref, Range};
+use std::time::{Duration, Instant};
+
+pub use device::{Device, Devices};
+
+use crate::cost::FrameCost;
+use crate::error::{Error, Result, SceneError};
+use crate::image::{RadianceImage, kept_image};
+use crate::opencl::{MappedFilm, RendererOptions};
+use crate::reference::{self, Tracer};
+use crate::scene::{Measure, Method, Ray, Scene, SceneStamp};
+use device::Backend;
+use one::{DeviceRenderer, Rows};
+use several::SeveralRenderer;
+
+/// An image in the renderer's own memory, linear RGBA by rows, readable until it is dropped.
+#[derive(Debug)]
+pub struct MappedImage<'a>(MappedBackend<'a>);
+
+#[derive(Debug)]
+enum MappedBackend<'a> {
+    OpenCl(MappedFilm<'a>),
+    Host(&'a [f32]),
+}
+
+impl Deref for MappedImage<'_> {
+    type Target = [f32];
+
+    fn deref(&self) -> &[f32] {
+        match &self.0 {
+            MappedBackend::OpenCl(mapped) => mapped,
+            MappedBackend::Host(values) => values,
+        }
+    }
+}
+
+/// Renders scenes on a device, or on several at once. Kernels and buffers are kept: frames after the first allocate nothing
+/// on the device and upload only what changed.
+#[derive(Debug)]
+pub struct Renderer {
+    backend: RendererBackend,
+    /// The scene that was checked last.
+    checked: Option<SceneStamp>,
+}
+
+#[derive(Debug)]
+enum RendererBackend {
+    OpenCl(Box<DeviceRenderer>),
+    Several(Box<SeveralRenderer>),
+    Reference {
+        image: Option<RadianceImage>,
+        cost: FrameCost,
+    },
+}
+
+impl Renderer {
+    /// Opens a device. Kernels are built when a scene first needs them.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the driver refuses.
+    pub fn new(device: &Device) -> Result<Self> {
+        Self::with_options(device, &RendererOptions::default())
+    }
+
+    /// Opens a device with options of the caller's choice.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`], and [`Error::Unsupported`] for options that kernels cannot be built for.
+    pub fn with_options(device: &Device, options: &RendererOptions) -> Result<Self> {
+        Ok(Self::with_backend(match &device.backend {
+            Backend::OpenCl(device) => {
+                RendererBackend::OpenCl(Box::new(DeviceRenderer::new(device, options)?))
+            }
+            Backend::Reference => RendererBackend::Reference {
+                image: None,
+                cost: FrameCost::default(),
+            },
+        }))
+    }
+
+    /// Opens devices that draw every frame together, each a range of its rows: in the first frame as many as it has
+    /// compute units beside the others, then by the time that it took in the last ones, so that all are done together.
+    /// A device too slow for a row gets one again now and then.
+    ///
+    /// Devices of one kind draw the image that one of them draws, bit for bit; others differ within the tolerance. Single
+    /// rays ([`Renderer::integrate`]) go to the first. One device is as by [`Renderer::with_options`].
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] if there is no device, or the built-in reference is among several; [`Error::Device`].
+    pub fn on_devices(devices: &[Device], options: &RendererOptions) -> Result<Self> {
+        match devices {
+            [] => Err(Error::Unsupported(
+                "a renderer needs a device; the list has none".to_owned(),
+            )),
+            [device] => Self::with_options(device, options),
+            several => {
+                let renderer = SeveralRenderer::new(several, options)?;
+                let backend = RendererBackend::Several(Box::new(renderer));
+                Ok(Self::with_backend(backend))
+            }
+        }
+    }
+
+    fn with_backend(backend: RendererBackend) -> Self {
+        Self {
+            backend,
+            checked: None,
+        }
+    }
+
+    /// Returns the rows of the last frame that each device drew, in the order of [`Renderer::on_devices`]; none before the
+    /// first frame, or on one device.
+    #[must_use]
+    pub fn shares(&self) -> &[Range<u32>] {
+        match &self.backend {
+            RendererBackend::Several(renderer) => renderer.rows(),
+            RendererBackend::OpenCl(_) | RendererBackend::Reference { .. } => &[],
+        }
+    }
+
+    /// Renders the scene's linear radiance, RGBA.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if the scene is not valid; [`Error::Build`] if the kernels' compiler refuses;
+    /// [`Error::OutOfMemory`], [`Error::Device`].
+    pub fn render(&mut self, scene: &Scene) -> Result<RadianceImage> {
+        self.render_with_progress(scene, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Likewise; `progress` hears the finished share of the work, 0 to 1, several times a second, and may stop it.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::Interrupted`] if `progress` stopped the work.
+    pub fn render_with_progress(
+        &mut self,
+        scene: &Scene,
+        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<RadianceImage> {
+        self.check(scene)?;
+        let mut image = RadianceImage::new(scene.image)?;
+        let all = Rows {
+            rows: 0..scene.image.height,
+            target: image.as_mut_slice(),
+            stride: 4 * scene.image.width as usize,
+        };
+        self.draw(scene, all, progress)?;
+        Ok(image)
+    }
+
+    /// Renders into the caller's memory: `4 * width * height` values, linear RGBA by rows from the top left.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::Unsupported`] if the slice has another length.
+    pub fn render_into(&mut self, scene: &Scene, target: &mut [f32]) -> Result<()> {
+        self.check(scene)?;
+        let needed = 4 * scene.image.pixels();
+        if target.len() != needed {
+            return Err(Error::Unsupported(format!(
+                "render_into: {} values given, {}x{} RGBA pixels are {needed}",
+                target.len(),
+                scene.image.width,
+                scene.image.height
+            )));
+        }
+        let all = Rows {
+            rows: 0..scene.image.height,
+            target,
+            stride: 4 * scene.image.width as usize,
+        };
+        self.draw(scene, all, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Renders some rows of the scene's image into the caller's memory, such as a part of a larger image: linear RGBA by
+    /// rows from the top left, the first of `rows` at the beginning of `target`, each `stride` values after the one before.
+    /// What lies between the rows, and after the last, is left alone.
+    ///
+    /// An image that is rendered in parts is, within the scene's tolerance, the one that is rendered whole; bit for bit
+    /// where the parts begin at multiples of 256 rows.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::Unsupported`] if the image has not those rows, a row of `4 * width` values is
+    /// longer than `stride`, or `target` ends before the last row does.
+    pub fn render_rows(
+        &mut self,
+        scene: &Scene,
+        rows: Range<u32>,
+        target: &mut [f32],
+        stride: usize,
+    ) -> Result<()> {
+        self.check(scene)?;
+        let (width, height) = (scene.image.width, scene.image.height);
+        if rows.start > rows.end || rows.end > height {
+            return Err(Error::Unsupported(format!(
+                "render_rows: rows {} to {}, the image has {height}",
+                rows.start, rows.end
+            )));
+        }
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let row = 4 * width as usize;
+        let before_last = (rows.len() - 1).saturating_mul(stride);
+        let needed = before_last.saturating_add(row);
+        if stride < row || target.len() < needed {
+            return Err(Error::Unsupported(format!(
+                "render_rows: {} values in rows {stride} apart; {width}x{} RGBA pixels need rows of {row}, and {needed} in \
+                 all",
+                target.len(),
+                rows.len()
+            )));
+        }
+        let wanted = Rows {
+            rows,
+            target,
+            stride,
+        };
+        self.draw(scene, wanted, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Renders into the renderer's own memory. On one CPU device the image is where the kernels wrote it: nothing is
+    /// copied.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::OutOfMemory`] if the image is larger than one buffer of the device.
+    pub fn render_mapped(&mut self, scene: &Scene) -> Result<MappedImage<'_>> {
+        self.check(scene)?;
+        match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => {
+                let mapped = renderer.render_mapped(scene)?;
+                Ok(MappedImage(MappedBackend::OpenCl(mapped)))
+            }
+            RendererBackend::Several(renderer) => {
+                let values = renderer.render_kept(scene)?;
+                Ok(MappedImage(MappedBackend::Host(values)))
+            }
+            RendererBackend::Reference { image, cost } => {
+                let begun = Instant::now();
+                let image = kept_image(image, scene.image)?;
+                let nothing = &mut |_: f32| ControlFlow::Continue(());
+                let (method, rows) = (scene.integration.method, 0..scene.image.height);
+                reference::render_rows(scene, method, rows, image.as_mut_slice(), nothing)?;
+                *cost = reference_cost(scene, scene.image.pixels(), begun.elapsed());
+                Ok(MappedImage(MappedBackend::Host(image.as_slice())))
+            }
+        }
+    }
+
+    /// Returns what the last frame cost.
+    #[must_use]
+    pub fn last_cost(&self) -> FrameCost {
+        match &self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.cost(),
+            RendererBackend::Several(renderer) => renderer.cost(),
+            RendererBackend::Reference { cost, .. } => *cost,
+        }
+    }
+
+    /// Integrates along single rays: linear RGB, over the parameter or the length of each ray as the scene's measure says.
+    /// The scene's camera, image and depth play no part.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`]; [`Error::Scene`] also for a ray that [`Ray::fault`] refuses.
+    pub fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<[f64; 3]>> {
+        self.check(scene)?;
+        for (index, ray) in rays.iter().enumerate() {
+            if let Some(fault) = ray.fault() {
+                return Err(SceneError::value(format!("ray {index}"), fault).into());
+            }
+        }
+        let pixels = match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.integrate(scene, rays)?,
+            RendererBackend::Several(renderer) => renderer.integrate(scene, rays)?,
+            RendererBackend::Reference { .. } => {
+                let tracer = Tracer::new(scene, scene.integration.method);
+                let radiances = rays.iter().map(|ray| tracer.radiance(ray, 1.0).to_array());
+                return Ok(radiances.collect());
+            }
+        };
+        let measure = |ray: &Ray| match scene.integration.measure {
+            Measure::Parameter => 1.0,
+            Measure::Length => ray.span.length(),
+        };
+        let colors = pixels.iter().zip(rays).map(|(pixel, ray)| {
+            let [red, green, blue, _] = *pixel;
+            [red, green, blue].map(|light| measure(ray) * f64::from(light))
+        });
+        Ok(colors.collect())
+    }
+
+    /// Checks a scene, unless it is the one that was checked last.
+    fn check(&mut self, scene: &Scene) -> Result<()> {
+        let stamp = Some(scene.stamp());
+        if self.checked != stamp {
+            self.checked = None;
+            scene.validate()?;
+            self.checked = stamp;
+        }
+        Ok(())
+    }
+
+    fn draw(
+        &mut self,
+        scene: &Scene,
+        wanted: Rows<'_>,
+        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<()> {
+        match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => {
+                renderer.render_rows(scene, wanted, progress)?;
+                Ok(())
+            }
+            RendererBackend::Several(renderer) => renderer.render_rows(scene, wanted, progress),
+            RendererBackend::Reference { cost, .. } => {
+                let begun = Instant::now();
+                let pixels = wanted.rows.len() * scene.image.width as usize;
+                draw_reference(scene, wanted, progress)?;
+                *cost = reference_cost(scene, pixels, begun.elapsed());
+                Ok(())
+            }
+        }
+    }
+
+    /// The engine of the device, if there is one device.
+    pub(crate) fn wave(&mut self) -> Option<&mut crate::wave::Wave> {
+        match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => Some(renderer.wave()),
+            RendererBackend::Several(_) | RendererBackend::Reference { .. } => None,
+        }
+    }
+}
+
+fn draw_reference(
+    scene: &Scene,
+    wanted: Rows<'_>,
+    progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+) -> Result<()> {
+    let Rows {
+        rows,
+        target,
+        stride,
+    } = wanted;
+    let (method, row) = (scene.integration.method, 4 * scene.image.width as usize);
+    if stride == row {
+        let target = &mut target[..rows.len() * row];
+        return reference::render_rows(scene, method, rows, target, progress);
+    }
+    let mut image = vec![0.0; rows.len() * row];
+    reference::render_rows(scene, method, rows, &mut image, progress)?;
+    for (to, from) in target.chunks_mut(stride).zip(image.chunks_exact(row)) {
+        to[..row].copy_from_slice(from);
+    }
+    Ok(())
+}
+
+/// The reference's time is all its own; the samples of its adaptive quadrature are not counted.
+fn reference_cost(scene: &Scene, pixels: usize, time: Duration) -> FrameCost {
+    let integrals = pixels as u64 * scene.source_count() as u64;
+    let samples = match scene.integration.method {
+        Method::Simpson { divisions } => u64::from(divisions) + 1,
+        Method::Exact { .. } => 0,
+    };
+    FrameCost {
+        kernel: time,
+        integrals,
+        samples: integrals * samples,
+        launches: 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_renderer_may_move_to_another_thread() {
+        fn is_send<T: Send>() {}
+        is_send::<Renderer>();
+    }
+}

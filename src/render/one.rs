@@ -1,0 +1,342 @@
+//! Renders scenes on one OpenCL device: plans a frame, draws it in bands that fit into the film, and reads them back.
+
+use std::ops::{ControlFlow, Range};
+use std::time::{Duration, Instant};
+
+use opencl3::event::Event;
+use opencl3::types::cl_event;
+
+use crate::cost::FrameCost;
+use crate::error::{Error, Result};
+use crate::opencl::{
+    Compute, Film, HostLink, HostTarget, MappedFilm, OpenClDevice, Pixel, RendererOptions, unfit,
+};
+use crate::scene::{Ray, Scene};
+use crate::wave::{Plan, Wave};
+
+/// A device with its engines and its film, which are kept from frame to frame.
+#[derive(Debug)]
+pub(crate) struct DeviceRenderer {
+    // Dropped in this order: what uses the context before the context.
+    wave: Wave,
+    film: Film,
+    /// Whose frames are enqueued, if a host's.
+    host: Option<HostLink>,
+    /// Whether the device itself writes the caller's memory where it can; else what it wrote is copied there.
+    pub(crate) writes_in_place: bool,
+    compute: Compute,
+}
+
+/// Rows of an image that are wanted, and where: RGBA by rows that begin `stride` values apart, the first at the beginning
+/// of `target`.
+pub(crate) struct Rows<'a> {
+    pub rows: Range<u32>,
+    pub target: &'a mut [f32],
+    pub stride: usize,
+}
+
+/// Hears the finished share of the work, 0 to 1, and may stop it.
+type Progress<'a> = dyn FnMut(f32) -> ControlFlow<()> + 'a;
+
+impl DeviceRenderer {
+    /// Opens a device. Kernels are built when a scene first needs them.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the driver refuses.
+    pub(crate) fn new(device: &OpenClDevice, options: &RendererOptions) -> Result<Self> {
+        Self::with_compute(Compute::new(device)?, None, options)
+    }
+
+    pub(crate) fn with_compute(
+        compute: Compute,
+        host: Option<HostLink>,
+        options: &RendererOptions,
+    ) -> Result<Self> {
+        Ok(Self {
+            wave: Wave::new(&compute, options)?,
+            film: Film::new(),
+            host,
+            writes_in_place: false,
+            compute,
+        })
+    }
+
+    pub(crate) fn wave(&mut self) -> &mut Wave {
+        &mut self.wave
+    }
+
+    /// What the last frame cost.
+    pub(crate) fn cost(&self) -> FrameCost {
+        self.wave.cost()
+    }
+
+    /// See [`Wave::grain_rows`].
+    pub(crate) fn grain_rows(&mut self, scene: &Scene) -> u32 {
+        self.wave.grain_rows(scene)
+    }
+
+    /// Renders some rows of a valid scene. Gives the time from the first launch on, unless kernels had to be built.
+    pub(crate) fn render_rows(
+        &mut self,
+        scene: &Scene,
+        wanted: Rows<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Option<Duration>> {
+        let built = self.wave.kernel_count();
+        let plan = self
+            .wave
+            .plan(&self.compute, scene, self.film.format())?;
+        let is_built = self.wave.kernel_count() == built;
+        let begun = Instant::now();
+        let Rows {
+            rows,
+            target,
+            stride,
+        } = wanted;
+        let width = scene.image.width as usize;
+        let pixels = Wave::pixels_of(scene, &rows);
+        let (begin, len) = (pixels.start as usize, pixels.len());
+        if stride == 4 * width {
+            let target: &mut [Pixel] = bytemuck::cast_slice_mut(&mut target[..4 * len]);
+            if self.writes_in_place && Film::reaches(&self.compute, target) {
+                self.draw_in_place(&plan, pixels, target, progress)?;
+                return Ok(is_built.then(|| begun.elapsed()));
+            }
+        }
+        let grain = self.grain_rows(scene) * scene.image.width;
+        let mut read = |film: &Film, compute: &Compute, band: Range<usize>| {
+            let first = (band.start - begin) / width * stride;
+            let target = &mut target[first..];
+            match stride == 4 * width {
+                true => {
+                    let target = &mut target[..4 * band.len()];
+                    film.read(compute, bytemuck::cast_slice_mut(target))
+                }
+                false => film.read_rows(compute, band.len(), 4 * width, target, stride),
+            }
+        };
+        self.draw_bands(&plan, pixels, grain, &mut read, progress)?;
+        Ok(is_built.then(|| begun.elapsed()))
+    }
+
+    /// Linear RGBA along single rays; light is measured over the parameter s.
+    pub(crate) fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<Pixel>> {
+        let plan = self.wave.plan_rays(&self.compute, scene, rays)?;
+        let mut radiances = vec![[0.0; 4]; rays.len()];
+        let mut read = |film: &Film, compute: &Compute, band: Range<usize>| {
+            film.read(compute, &mut radiances[band])
+        };
+        let nothing = &mut |_: f32| ControlFlow::Continue(());
+        let all = 0..rays.len() as u32;
+        self.draw_bands(&plan, all, plan.grain(), &mut read, nothing)?;
+        Ok(radiances)
+    }
+
+    /// Draws pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read.
+    fn draw_bands(
+        &mut self,
+        plan: &Plan,
+        pixels: Range<u32>,
+        grain: u32,
+        read: &mut dyn FnMut(&Film, &Compute, Range<usize>) -> Result<()>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
+        let Self {
+            wave,
+            film,
+            compute,
+            ..
+        } = self;
+        let band_len = film.reserve_band(compute, pixels.len(), grain)?;
+        wave.begin(compute, plan, pixels.len())?;
+        for begin in pixels.clone().step_by(band_len) {
+            let band = begin..pixels.end.min(begin.saturating_add(band_len as u32));
+            film.begin_at(begin);
+            let mut report = |pixel| progress(share(&pixels, pixel));
+            wave.draw(compute, plan, band.clone(), film, &mut report)?;
+            read(film, compute, band.start as usize..band.end as usize)?;
+            wave.settle(compute, plan)?;
+        }
+        wave.settle_uploads(compute)
+    }
+
+    /// Lets the device draw pixels where the caller wants them.
+    fn draw_in_place(
+        &mut self,
+        plan: &Plan,
+        pixels: Range<u32>,
+        target: &mut [Pixel],
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
+        let Self {
+            wave,
+            film,
+            compute,
+            ..
+        } = self;
+        let mut film = film.lend(compute, target)?;
+        wave.begin(compute, plan, pixels.len())?;
+        film.begin_at(pixels.start);
+        let mut report = |pixel| progress(share(&pixels, pixel));
+        wave.draw(compute, plan, pixels.clone(), &mut film, &mut report)?;
+        film.show_host(pixels.len())?;
+        wave.settle(compute, plan)?;
+        wave.settle_uploads(compute)
+    }
+
+    /// Renders into the film's own buffer and maps it: on a CPU, nothing is copied.
+    pub(crate) fn render_mapped(&mut self, scene: &Scene) -> Result<MappedFilm<'_>> {
+        let plan = self
+            .wave
+            .plan(&self.compute, scene, self.film.format())?;
+        let Self {
+            wave,
+            film,
+            compute,
+            ..
+        } = self;
+        let pixels = scene.image.pixels();
+        if film.reserve_band(compute, pixels, plan.grain())? < pixels {
+            return Err(Error::OutOfMemory(format!(
+                "{}: {}x{} pixels are more than one buffer of the device holds; read the image back instead",
+                compute.device().name,
+                scene.image.width,
+                scene.image.height
+            )));
+        }
+        wave.begin(compute, &plan, pixels)?;
+        film.begin_at(0);
+        let nothing = &mut |_: u32| ControlFlow::Continue(());
+        wave.draw(compute, &plan, 0..pixels as u32, film, nothing)?;
+        let mapped = film.map(compute, pixels)?;
+        wave.settle(compute, &plan)?;
+        wave.settle_uploads(compute)?;
+        Ok(mapped)
+    }
+
+    /// Enqueues a frame of a valid scene for the host. Nothing here waits.
+    ///
+    /// # Safety
+    /// As [`crate::Renderer::enqueue`].
+    #[allow(unsafe_code)] // the caller's promise is handed on
+    pub(crate) unsafe fn enqueue(
+        &mut self,
+        scene: &Scene,
+        target: HostTarget,
+        wait_list: &[cl_event],
+    ) -> Result<Event> {
+        let Self {
+            wave,
+            film,
+            host,
+            compute,
+            ..
+        } = self;
+        let host = host.as_mut().ok_or_else(no_host)?;
+        let size = (scene.image.width, scene.image.height);
+        // SAFETY: the caller's promise.
+        let frame = unsafe { host.begin(compute, film, target, size, wait_list) }?;
+        let mut draw = || {
+            let plan = wave.plan(compute, scene, film.format())?;
+            wave.begin(compute, &plan, scene.image.pixels())?;
+            wave.draw_unwatched(compute, &plan, film)
+        };
+        let drawn = draw();
+        host.end(compute, film, frame, drawn)
+    }
+}
+
+/// The finished share of some pixels.
+fn share(pixels: &Range<u32>, pixel: u32) -> f32 {
+    (pixel - pixels.start) as f32 / pixels.len() as f32
+}
+
+/// A frame was to be enqueued by a renderer without a host.
+pub(crate) fn no_host() -> Error {
+    unfit(
+        "queue",
+        "this renderer was made without one; make it with Renderer::on_host",
+    )
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::image::ImageSize;
+    use crate::opencl::discover;
+    use crate::scene::{Camera, Decay, Method, Torus};
+
+    /// A ring seen from 4 away, so many pixels wide and high, by Simpson's rule.
+    pub(crate) fn ring(size: u32) -> Scene {
+        let mut scene = Scene::new(Camera::new(DVec3::new(2.8, 1.6, 2.3), DVec3::ZERO));
+        scene.image = ImageSize {
+            width: size,
+            height: size,
+        };
+        scene.decay = Some(Decay {
+            alpha: 0.1,
+            beta: 0.1,
+        });
+        scene.integration.method = Method::Simpson { divisions: 64 };
+        scene.tori.push(Torus::new(0.9));
+        scene
+    }
+
+    fn draw(renderer: &mut DeviceRenderer, scene: &Scene, rows: Range<u32>, stride: usize) -> Vec<f32> {
+        let mut target = vec![0.0; rows.len() * stride];
+        let wanted = Rows {
+            rows,
+            target: &mut target,
+            stride,
+        };
+        let nothing = &mut |_: f32| ControlFlow::Continue(());
+        renderer.render_rows(scene, wanted, nothing).unwrap();
+        target
+    }
+
+    #[test]
+    fn an_image_larger_than_a_buffer_comes_in_bands() {
+        let mut scene = ring(96);
+        scene.image.width = 100;
+        let mut images = Vec::new();
+        for bytes in [1 << 30, 40_000] {
+            let mut device = discover().devices.swap_remove(0);
+            device.max_allocation_bytes = bytes;
+            let options = RendererOptions::default();
+            let mut renderer = DeviceRenderer::new(&device, &options).unwrap();
+            for stride in [400, 401] {
+                let target = draw(&mut renderer, &scene, 0..96, stride);
+                let rows = target.chunks(stride).map(|row| row[..400].to_vec());
+                images.push(rows.collect::<Vec<_>>());
+            }
+        }
+        assert!(images.windows(2).all(|pair| pair[0] == pair[1]));
+        assert!(images[0].iter().flatten().all(|value| *value > 0.0));
+    }
+
+    #[test]
+    fn an_image_cut_between_tiles_is_the_same_to_the_bit_and_cut_elsewhere_is_not() {
+        let mut scene = ring(160);
+        scene.integration.method = Method::default();
+        let device = discover().devices.swap_remove(0);
+        let options = RendererOptions::default();
+        let mut renderer = DeviceRenderer::new(&device, &options).unwrap();
+        let grain = renderer.grain_rows(&scene);
+        let mut draw = |cut: u32, is_in_place: bool| {
+            renderer.writes_in_place = is_in_place;
+            let mut whole = draw(&mut renderer, &scene, 0..cut, 640);
+            whole.extend(draw(&mut renderer, &scene, cut..160, 640));
+            whole
+        };
+        let whole = draw(0, false);
+        for cut in [0, grain, 128, 160] {
+            assert!(
+                draw(cut, true) == whole && draw(cut, false) == whole,
+                "{cut}"
+            );
+        }
+        assert!(draw(60, true) != whole && draw(60, false) != whole);
+    }
+}

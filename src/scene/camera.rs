@@ -1,0 +1,94 @@
+//! The camera.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::values::{Checked, Fault, SMALLEST, direction, finite, positive, read_vector, vector};
+
+/// A pinhole camera and the length of its rays.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Camera {
+    /// Position of the eye.
+    #[serde(deserialize_with = "read_vector")]
+    pub eye: DVec3,
+    /// The point looked at, in the middle of the image.
+    #[serde(deserialize_with = "read_vector")]
+    pub target: DVec3,
+    /// The direction that is up in the image; need not be perpendicular to the view.
+    #[serde(default = "plus_z", deserialize_with = "read_vector")]
+    pub up: DVec3,
+    /// Full vertical angle of view, degrees.
+    #[serde(default = "default_fov_y")]
+    pub fov_y: f64,
+    /// Distance from the eye to the projection plane, where the rays begin, world units.
+    #[serde(default = "default_near")]
+    pub near: f64,
+    /// Length of every ray, `|E - S|`, world units; `None`: 5 times the distance from the projection plane to the target.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ray_length: Option<f64>,
+}
+
+impl Camera {
+    /// Makes a camera at `eye` that looks at `target`: +z up, 45 degrees, projection plane at 1.
+    #[must_use]
+    pub fn new(eye: DVec3, target: DVec3) -> Self {
+        Self {
+            eye,
+            target,
+            up: plus_z(),
+            fov_y: default_fov_y(),
+            near: default_near(),
+            ray_length: None,
+        }
+    }
+
+    /// Returns the length of every ray, `|E - S|`, world units.
+    #[must_use]
+    pub fn ray_length(&self) -> f64 {
+        let beyond_plane = self.eye.distance(self.target) - self.near;
+        self.ray_length.unwrap_or(5.0 * beyond_plane)
+    }
+
+    pub(super) fn check(&self) -> Checked {
+        vector("eye", self.eye)?;
+        vector("target", self.target)?;
+        direction("up", self.up)?;
+        finite("fov_y", self.fov_y)?;
+        if !(0.001..=179.9).contains(&self.fov_y) {
+            let message = "must lie between 0.001 and 179.9 degrees";
+            return Err(Fault::new("fov_y", message));
+        }
+        positive("near", self.near)?;
+        let view = self.target - self.eye;
+        if view.length() < SMALLEST {
+            let message = "the same point as camera.eye: there is no view direction";
+            return Err(Fault::new("target", message));
+        }
+        if view.normalize().cross(self.up.normalize()).length() < 1e-6 {
+            let message = "parallel to the view direction; choose any other";
+            return Err(Fault::new("up", message));
+        }
+        match self.ray_length {
+            Some(length) => positive("ray_length", length),
+            None if self.ray_length() < SMALLEST => Err(Fault::new(
+                "near",
+                "the projection plane lies behind the target, so ray_length has no default: \
+                 give camera.ray_length, or a smaller near",
+            )),
+            None => Ok(()),
+        }
+    }
+}
+
+fn default_fov_y() -> f64 {
+    45.0
+}
+
+fn default_near() -> f64 {
+    1.0
+}
+
+fn plus_z() -> DVec3 {
+    DVec3::Z
+}

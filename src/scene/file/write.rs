@@ -1,0 +1,61 @@
+//! Writes a scene to TOML or JSON, so that reading what was written gives the same scene.
+
+use std::path::Path;
+
+use serde::{Serialize, Serializer};
+
+use super::{DepthTable, SceneFile};
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+
+/// Why a scene cannot be written.
+const NO_FILE: &str = "the depth image is in no file, so the scene cannot name it; save it as OpenEXR and open it again";
+
+impl Serialize for Scene {
+    /// Writes the structure of scene files. A depth image is named by the full path of its file.
+    fn serialize<S: Serializer>(&self, writer: S) -> std::result::Result<S::Ok, S::Error> {
+        let depth = match &self.depth {
+            None => None,
+            Some(depth) => Some(DepthTable {
+                file: depth
+                    .file()
+                    .ok_or_else(|| serde::ser::Error::custom(NO_FILE))?
+                    .to_owned(),
+                along: depth.along(),
+            }),
+        };
+        SceneFile::of(self, depth).serialize(writer)
+    }
+}
+
+impl Scene {
+    /// Writes the scene as TOML.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] if it has a depth image that is in no file.
+    pub fn to_toml(&self) -> Result<String> {
+        toml::to_string(self).map_err(|error| Error::Unsupported(error.to_string()))
+    }
+
+    /// Writes the scene as JSON, of the same structure as the TOML.
+    ///
+    /// # Errors
+    /// As [`Scene::to_toml`].
+    pub fn to_json(&self) -> Result<String> {
+        serde_json::to_string_pretty(self).map_err(|error| Error::Unsupported(error.to_string()))
+    }
+
+    /// Writes a scene file; the ending chooses: `.json` is JSON, everything else TOML.
+    ///
+    /// # Errors
+    /// As [`Scene::to_toml`], and [`Error::Output`] if the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        let text = match super::is_json(path) {
+            true => self.to_json()?,
+            false => self.to_toml()?,
+        };
+        std::fs::write(path, text)
+            .map_err(|error| Error::output(path, error.to_string()).caused_by(error))
+    }
+}

@@ -1,0 +1,178 @@
+//! How the light along a ray is summed.
+
+use serde::{Deserialize, Serialize};
+
+use super::values::{Checked, Fault, finite, positive};
+
+/// On every device the squared distance to a core is never taken below `(CORE_FLOOR |E - S|)^2`, so that every pixel is
+/// finite.
+pub const CORE_FLOOR: f64 = 1e-6;
+
+/// Decay with distance, `zeta(s) = alpha / (s + beta)^2` (Watanabe, Abe, Konno 2015, eq. 21), over s in `[0,1]`.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Decay {
+    /// Strength; positive.
+    pub alpha: f64,
+    /// Offset; positive.
+    pub beta: f64,
+}
+
+impl Decay {
+    /// Returns `zeta(s)`.
+    #[must_use]
+    pub fn at(self, s: f64) -> f64 {
+        self.alpha / ((s + self.beta) * (s + self.beta))
+    }
+
+    pub(super) fn check(&self) -> Checked {
+        positive("alpha", self.alpha)?;
+        positive("beta", self.beta)
+    }
+}
+
+/// How the integral along a ray is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Integration {
+    /// The quadrature.
+    pub method: Method,
+    /// Over what the integral runs.
+    pub measure: Measure,
+    /// Softening radius epsilon, world units: the squared distance to every core grows by its square.
+    pub softening: f64,
+}
+
+impl Default for Integration {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            measure: Measure::Parameter,
+            softening: 0.0,
+        }
+    }
+}
+
+/// A quadrature, with what it needs to know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Method {
+    /// Composite Simpson rule with equal divisions (2015, eq. 23), beads at the core included.
+    Simpson {
+        /// Number of equal divisions, even, 2 to 65536.
+        divisions: u32,
+    },
+    /// The integral itself.
+    Exact {
+        /// Relative error aimed at, 1e-12 to 1, 1 excluded.
+        tolerance: f64,
+        /// Where integrals are taken.
+        sampling: Sampling,
+    },
+}
+
+impl Method {
+    /// The Simpson rule with so many divisions.
+    #[must_use]
+    pub fn simpson(divisions: u32) -> Self {
+        Self::Simpson { divisions }
+    }
+
+    /// The integral itself to a relative error, by tiles.
+    #[must_use]
+    pub fn exact(tolerance: f64) -> Self {
+        Self::Exact {
+            tolerance,
+            sampling: Sampling::Tiles,
+        }
+    }
+
+    /// Its name in files: `simpson` or `exact`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Simpson { .. } => "simpson",
+            Self::Exact { .. } => "exact",
+        }
+    }
+
+    /// The relative error aimed at; the default's for the Simpson rule, which aims at none.
+    pub(crate) fn tolerance(&self) -> f64 {
+        match *self {
+            Self::Simpson { .. } => 1e-3,
+            Self::Exact { tolerance, .. } => tolerance,
+        }
+    }
+
+    /// Where integrals are taken.
+    pub(crate) fn sampling(&self) -> Sampling {
+        match *self {
+            Self::Simpson { .. } => Sampling::Pixels,
+            Self::Exact { sampling, .. } => sampling,
+        }
+    }
+
+    /// Where the method `exact` would take integrals.
+    #[cfg(feature = "papers")]
+    pub(crate) fn sampling_or_default(&self) -> Sampling {
+        match *self {
+            Self::Simpson { .. } => Sampling::default(),
+            Self::Exact { sampling, .. } => sampling,
+        }
+    }
+
+    pub(super) fn check(&self) -> Checked {
+        match *self {
+            Self::Simpson { divisions } => check_divisions(divisions),
+            Self::Exact { tolerance, .. } => check_tolerance(tolerance),
+        }
+    }
+}
+
+impl Default for Method {
+    /// The integral to 1e-3, by tiles.
+    fn default() -> Self {
+        Self::exact(1e-3)
+    }
+}
+
+pub(super) fn check_divisions(divisions: u32) -> Checked {
+    if (2..=65536).contains(&divisions) && divisions.is_multiple_of(2) {
+        return Ok(());
+    }
+    let message = format!("{divisions}; Simpson's rule needs an even number from 2 to 65536");
+    Err(Fault::new("divisions", message))
+}
+
+pub(super) fn check_tolerance(tolerance: f64) -> Checked {
+    finite("tolerance", tolerance)?;
+    if (1e-12..1.0).contains(&tolerance) {
+        return Ok(());
+    }
+    let message = "must lie between 1e-12 and 1, 1 excluded";
+    Err(Fault::new("tolerance", message))
+}
+
+/// Where integrals are taken.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Sampling {
+    /// At every pixel.
+    Pixels,
+    /// Of each source, at every pixel near its core; elsewhere at a few pixels of a tile, the others interpolated within
+    /// the tolerance. Every pixel is taken all the same where sources of opposite signs cancel, whose errors do not, and
+    /// on the built-in reference.
+    #[default]
+    Tiles,
+}
+
+/// Over what the integral runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Measure {
+    /// The ray's parameter s in `[0,1]` (2015).
+    Parameter,
+    /// Length in world units: `|E - S|` times as much (2010, 2006).
+    Length,
+}

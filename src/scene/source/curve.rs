@@ -1,0 +1,104 @@
+//! A quadratic curve of light.
+
+use glam::DVec3;
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::{Brightness, Profile, Source, item, one, white};
+use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
+
+/// A quadratic Bezier curve of light: `S(t*)/d`, or by its [`Profile`] `S(t*)/d^2`, d the distance to its nearest point
+/// `C(t*)`, `S(t*)` the local intensity there (2015, eq. 8-17).
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Curve {
+    /// Bezier control points. They may be collinear or coincide.
+    #[serde(deserialize_with = "three_points")]
+    pub control_points: [DVec3; 3],
+    /// The paper's energy coefficient.
+    #[serde(default = "one")]
+    pub coefficient: f64,
+    /// Linear RGB.
+    #[serde(default = "white", deserialize_with = "read_vector")]
+    pub color: DVec3,
+    /// The local-intensity series W: weights of a clamped uniform quadratic B-spline over the curve's parameter, at
+    /// least 3; `None`: 1 everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub intensity: Option<Vec<f64>>,
+    /// How the field falls off.
+    #[serde(default)]
+    pub profile: Profile,
+}
+
+impl Curve {
+    /// Makes a white curve of even intensity.
+    #[must_use]
+    pub fn new(control_points: [DVec3; 3]) -> Self {
+        Self {
+            control_points,
+            coefficient: one(),
+            color: white(),
+            intensity: None,
+            profile: Profile::default(),
+        }
+    }
+}
+
+impl Source for Curve {
+    fn check(&self, brightness: &Brightness) -> Checked {
+        for (k, point) in self.control_points.iter().enumerate() {
+            vector("control_points", *point).map_err(|fault| fault.at(item("control_points", k)))?;
+        }
+        let series = self.intensity.iter().flatten();
+        let strongest = series.fold(1.0_f64, |most, value| most.max(value.abs()));
+        brightness.check_light(self.profile, self.coefficient, self.color, strongest)?;
+        let Some(series) = &self.intensity else {
+            return Ok(());
+        };
+        if series.len() < 3 {
+            return Err(Fault::new(
+                "intensity",
+                format!(
+                    "needs at least 3 values, found {}; leave it out for 1 everywhere",
+                    series.len()
+                ),
+            ));
+        }
+        for (k, value) in series.iter().enumerate() {
+            finite("intensity", *value).map_err(|fault| fault.at(item("intensity", k)))?;
+        }
+        Ok(())
+    }
+
+    fn profile(&self) -> Profile {
+        self.profile
+    }
+
+    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
+        for weight in self.intensity.as_deref().unwrap_or(&[1.0]) {
+            add(self.coefficient * weight * self.color);
+        }
+    }
+
+    fn specimen(place: DVec3, profile: Profile) -> Self {
+        let points = [(-1.3, 0.1), (0.2, 1.4), (1.1, -0.6)];
+        Self {
+            color: DVec3::new(1.0, 0.3, 0.6),
+            profile,
+            ..Self::new(points.map(|(x, z)| place + DVec3::new(x, 0.3 * z, z)))
+        }
+    }
+}
+
+/// Reads exactly three control points.
+fn three_points<'de, D: Deserializer<'de>>(reader: D) -> Result<[DVec3; 3], D::Error> {
+    #[derive(Deserialize)]
+    struct Point(#[serde(deserialize_with = "read_vector")] DVec3);
+    let points = Vec::<Point>::deserialize(reader)?;
+    let found = points.len();
+    let points: Vec<DVec3> = points.into_iter().map(|point| point.0).collect();
+    points.try_into().map_err(|_| {
+        serde::de::Error::custom(format!(
+            "a quadratic curve has three control points, found {found}"
+        ))
+    })
+}

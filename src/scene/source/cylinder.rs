@@ -1,0 +1,67 @@
+//! An infinite line of light.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{Brightness, Profile, Source, one, white};
+use crate::scene::values::{Checked, direction, read_vector, vector};
+
+/// An infinite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the line (2015, eq. 3).
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cylinder {
+    /// A point of the line.
+    #[serde(default, deserialize_with = "read_vector")]
+    pub point: DVec3,
+    /// Direction of the line, of any length but zero.
+    #[serde(deserialize_with = "read_vector")]
+    pub direction: DVec3,
+    /// The paper's energy coefficient.
+    #[serde(default = "one")]
+    pub coefficient: f64,
+    /// Linear RGB.
+    #[serde(default = "white", deserialize_with = "read_vector")]
+    pub color: DVec3,
+    /// How the field falls off.
+    #[serde(default)]
+    pub profile: Profile,
+}
+
+impl Cylinder {
+    /// Makes a white line through the origin.
+    #[must_use]
+    pub fn new(direction: DVec3) -> Self {
+        Self {
+            point: DVec3::ZERO,
+            direction,
+            coefficient: one(),
+            color: white(),
+            profile: Profile::default(),
+        }
+    }
+}
+
+impl Source for Cylinder {
+    fn check(&self, brightness: &Brightness) -> Checked {
+        vector("point", self.point)?;
+        direction("direction", self.direction)?;
+        brightness.check_light(self.profile, self.coefficient, self.color, 1.0)
+    }
+
+    fn profile(&self) -> Profile {
+        self.profile
+    }
+
+    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
+        add(self.coefficient * self.color);
+    }
+
+    fn specimen(place: DVec3, profile: Profile) -> Self {
+        Self {
+            point: 2.0 * place,
+            color: DVec3::new(0.2, 1.0, 0.4),
+            profile,
+            ..Self::new(DVec3::new(1.0, 0.3, 0.4))
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The sources of light: each a scalar field that falls off from a core, times a coefficient and a colour.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::kinds::{for_each_kind, list_kinds};
+use super::values::{Checked, Fault, finite, vector};
+
+for_each_kind!(list_kinds);
+
+/// How a field falls off with the distance d to its core.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Profile {
+    /// `1/d` (2015, 2010).
+    #[default]
+    Inverse,
+    /// `1/d^2` (Sakai 2006).
+    InverseSquare,
+}
+
+/// What every kind of source says of itself.
+pub(crate) trait Source {
+    /// Checks its values; `brightness` tells which light float32 holds.
+    fn check(&self, brightness: &Brightness) -> Checked;
+
+    /// How its field falls off.
+    fn profile(&self) -> Profile;
+
+    /// Calls `add` with the colour times the coefficient of each of its parts.
+    fn for_each_light(&self, add: &mut dyn FnMut(DVec3));
+
+    /// A source of this kind at about `place`, for the self-test of kernels.
+    fn specimen(place: DVec3, profile: Profile) -> Self;
+}
+
+/// No product on the way to a pixel may exceed this: sums of up to 1e8 such lights are still finite in float32.
+pub(crate) const BRIGHTEST: f64 = 1e30;
+
+/// The greatest value that decay times field times measure can take, on a ray through a core.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Brightness {
+    pub inverse: f64,
+    pub inverse_square: f64,
+}
+
+impl Brightness {
+    fn of(&self, profile: Profile) -> f64 {
+        match profile {
+            Profile::Inverse => self.inverse,
+            Profile::InverseSquare => self.inverse_square,
+        }
+    }
+
+    /// Checks a coefficient and a colour; `weight` is the greatest local intensity.
+    fn check_light(&self, profile: Profile, coefficient: f64, color: DVec3, weight: f64) -> Checked {
+        finite("coefficient", coefficient)?;
+        vector("color", color)?;
+        let brightest = self.of(profile) * weight * coefficient.abs() * color.abs().max_element();
+        if brightest > BRIGHTEST {
+            return Err(Fault::new(
+                "coefficient",
+                format!(
+                    "next to the core the light comes to {brightest:.0e}, more than float32 holds"
+                ),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The name of an item of a list in a file, such as `intensity[3]`.
+fn item(list: &str, index: usize) -> Cow<'static, str> {
+    format!("{list}[{index}]").into()
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn plus_z() -> DVec3 {
+    DVec3::Z
+}
+
+fn white() -> DVec3 {
+    DVec3::ONE
+}

@@ -1,0 +1,58 @@
+//! A point of light.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{Brightness, Profile, Source, one, white};
+use crate::scene::values::{Checked, read_vector, vector};
+
+/// A point of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the point M (2015, eq. 2).
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sphere {
+    /// The point, M.
+    #[serde(deserialize_with = "read_vector")]
+    pub center: DVec3,
+    /// The paper's energy coefficient.
+    pub coefficient: f64,
+    /// Linear RGB.
+    #[serde(deserialize_with = "read_vector")]
+    pub color: DVec3,
+    /// How the field falls off.
+    pub profile: Profile,
+}
+
+impl Default for Sphere {
+    fn default() -> Self {
+        Self {
+            center: DVec3::ZERO,
+            coefficient: one(),
+            color: white(),
+            profile: Profile::default(),
+        }
+    }
+}
+
+impl Source for Sphere {
+    fn check(&self, brightness: &Brightness) -> Checked {
+        vector("center", self.center)?;
+        brightness.check_light(self.profile, self.coefficient, self.color, 1.0)
+    }
+
+    fn profile(&self) -> Profile {
+        self.profile
+    }
+
+    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
+        add(self.coefficient * self.color);
+    }
+
+    fn specimen(place: DVec3, profile: Profile) -> Self {
+        Self {
+            center: place,
+            color: DVec3::new(1.0, 0.5, 0.2),
+            profile,
+            ..Self::default()
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! A ring of light.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{Brightness, Profile, Source, one, plus_z, white};
+use crate::scene::values::{Checked, direction, positive, read_vector, vector};
+
+/// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle (2015,
+/// eq. 7).
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Torus {
+    /// Middle of the ring.
+    #[serde(default, deserialize_with = "read_vector")]
+    pub center: DVec3,
+    /// Normal of the ring's plane, of any length but zero.
+    #[serde(default = "plus_z", deserialize_with = "read_vector")]
+    pub axis: DVec3,
+    /// Radius of the circle, positive.
+    pub major_radius: f64,
+    /// The paper's energy coefficient.
+    #[serde(default = "one")]
+    pub coefficient: f64,
+    /// Linear RGB.
+    #[serde(default = "white", deserialize_with = "read_vector")]
+    pub color: DVec3,
+    /// How the field falls off.
+    #[serde(default)]
+    pub profile: Profile,
+}
+
+impl Torus {
+    /// Makes a white ring around the origin, in the plane z = 0.
+    #[must_use]
+    pub fn new(major_radius: f64) -> Self {
+        Self {
+            center: DVec3::ZERO,
+            axis: plus_z(),
+            major_radius,
+            coefficient: one(),
+            color: white(),
+            profile: Profile::default(),
+        }
+    }
+}
+
+impl Source for Torus {
+    fn check(&self, brightness: &Brightness) -> Checked {
+        vector("center", self.center)?;
+        direction("axis", self.axis)?;
+        positive("major_radius", self.major_radius)?;
+        brightness.check_light(self.profile, self.coefficient, self.color, 1.0)
+    }
+
+    fn profile(&self) -> Profile {
+        self.profile
+    }
+
+    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
+        add(self.coefficient * self.color);
+    }
+
+    fn specimen(place: DVec3, profile: Profile) -> Self {
+        Self {
+            center: place,
+            axis: DVec3::new(0.1, 0.4, 1.0),
+            color: DVec3::new(0.3, 0.6, 1.0),
+            profile,
+            ..Self::new(1.1)
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! The checks of single values, and the reading of vectors. A check that passes makes no string.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use serde::{Deserialize, Deserializer};
+
+use crate::error::SceneError;
+
+/// Largest magnitude of any number, smallest of a positive one: squares and cubes of what lies between stay finite and
+/// normal in the devices' float32.
+const LARGEST: f64 = 1e9;
+pub(super) const SMALLEST: f64 = 1e-9;
+
+pub(crate) type Checked = Result<(), Fault>;
+
+/// A value at fault in a table: its key there, and what is wrong with it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Fault {
+    key: Cow<'static, str>,
+    message: String,
+}
+
+impl Fault {
+    pub(crate) fn new(key: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
+        Self {
+            key: key.into(),
+            message: message.into(),
+        }
+    }
+
+    /// The same fault at another key.
+    pub(crate) fn at(self, key: Cow<'static, str>) -> Self {
+        Self { key, ..self }
+    }
+
+    /// The fault of a table of the scene, such as `camera` or `torus[1]`.
+    pub(super) fn of(self, table: &str) -> SceneError {
+        match table {
+            "" => SceneError::value(self.key, self.message),
+            table => SceneError::value(format!("{table}.{}", self.key), self.message),
+        }
+    }
+}
+
+pub(crate) fn finite(key: &'static str, value: f64) -> Checked {
+    if !value.is_finite() {
+        return Err(Fault::new(key, format!("{value} is not a finite number")));
+    }
+    if value.abs() > LARGEST {
+        return Err(Fault::new(
+            key,
+            format!("{value:e} is beyond {LARGEST:e}, what float32 devices can integrate"),
+        ));
+    }
+    Ok(())
+}
+
+pub(crate) fn positive(key: &'static str, value: f64) -> Checked {
+    finite(key, value)?;
+    if value <= 0.0 {
+        return Err(Fault::new(key, format!("must be positive, found {value}")));
+    }
+    if value < SMALLEST {
+        return Err(Fault::new(
+            key,
+            format!("{value:e} is below {SMALLEST:e}, what float32 devices can integrate"),
+        ));
+    }
+    Ok(())
+}
+
+pub(crate) fn vector(key: &'static str, value: DVec3) -> Checked {
+    let mut values = value.to_array().into_iter();
+    values.try_for_each(|v| finite(key, v))
+}
+
+pub(crate) fn direction(key: &'static str, value: DVec3) -> Checked {
+    vector(key, value)?;
+    if value.length() < SMALLEST {
+        return Err(Fault::new(
+            key,
+            format!(
+                "a vector shorter than {SMALLEST:e}, such as the zero vector, has no direction; give one such as \
+                 [0.0, 0.0, 1.0]"
+            ),
+        ));
+    }
+    Ok(())
+}
+
+/// Reads exactly three numbers; some formats would let a fourth pass unread.
+pub(crate) fn read_vector<'de, D: Deserializer<'de>>(reader: D) -> Result<DVec3, D::Error> {
+    let numbers = Vec::<f64>::deserialize(reader)?;
+    let found = numbers.len();
+    let numbers: [f64; 3] = numbers.try_into().map_err(|_| {
+        serde::de::Error::custom(format!("expected three numbers, found {found}"))
+    })?;
+    Ok(numbers.into())
+}
+
+/// A reader's message about a key of the table that it reads; [`unnamed`] takes it apart again.
+pub(crate) fn named(key: &str, message: &str) -> String {
+    format!("key `{key}`: {message}")
+}
+
+/// The key that a message of [`named`] is about, and the message.
+#[cfg(feature = "files")]
+pub(super) fn unnamed(message: &str) -> Option<(&str, &str)> {
+    message.strip_prefix("key `")?.split_once("`: ")
+}

@@ -1,0 +1,235 @@
+//! Carries a plan out: the launches of a frame, how much each takes, what is learnt from it.
+
+use std::ops::{ControlFlow, Range};
+use std::time::Duration;
+
+use opencl3::event::Event;
+
+use super::kernels::{Rays, Variant};
+use super::partition::Part;
+use super::plan::Plan;
+use super::tiles::{self, OpenTiles};
+use super::{Wave, counts};
+use crate::cost::FrameCost;
+use crate::error::{Error, Result};
+use crate::opencl::{Argument, Compute, DeviceType, Film, Handle, run_time, state};
+
+/// A launch under way.
+#[derive(Debug)]
+pub(super) struct Launched {
+    /// Of each pass.
+    events: Vec<Handle<Event>>,
+    /// If every pixel takes every source.
+    integrals: u64,
+    /// Samples of fields, or an estimate.
+    samples: f64,
+}
+
+impl Wave {
+    /// Begins a frame of so many pixels. The first makes room for the largest launches that may follow.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], [`Error::Device`].
+    pub(crate) fn begin(&mut self, compute: &Compute, plan: &Plan, pixels: usize) -> Result<()> {
+        self.pace.begin(&plan.counts);
+        self.cost = FrameCost::default();
+        self.under_way = None;
+        let largest = Part {
+            pixels: 0..plan.work.most_pixels().min(pixels as u32),
+            sources: 0..plan.work.source_count.min(plan.work.most_sources),
+        };
+        self.open_tiles.reserve(compute, &plan.passes(&largest))
+    }
+
+    /// Draws all sources on a band of pixels, one launch at a time: the pace of the next depends on it, and the queue stays
+    /// short. The last one may still be under way: [`Wave::settle`] waits for it.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] if `progress`, which hears the number of the next pixel, says so; [`Error::Device`].
+    pub(crate) fn draw(
+        &mut self,
+        compute: &Compute,
+        plan: &Plan,
+        band: Range<u32>,
+        film: &mut Film,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<()> {
+        let mut pixel = band.start;
+        while pixel < band.end {
+            let pixels = pixel..pixel + self.pace.pixels(&plan.work, band.end - pixel);
+            let mut source = 0;
+            loop {
+                self.settle(compute, plan)?;
+                let part = self.pace.part(&plan.work, &pixels, source);
+                self.under_way = Some(self.launch(compute, plan, &part, film, true)?);
+                source = part.sources.end;
+                if source >= plan.work.source_count {
+                    break;
+                }
+            }
+            pixel = pixels.end;
+            if progress(pixel).is_break() {
+                self.settle(compute, plan)?;
+                return Err(Error::Interrupted);
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws all sources on all of a frame's pixels without waiting for anything. What is found finished later tells the
+    /// pace.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the driver refuses a launch.
+    pub(crate) fn draw_unwatched(
+        &mut self,
+        compute: &Compute,
+        plan: &Plan,
+        film: &mut Film,
+    ) -> Result<()> {
+        self.learn(compute);
+        let pixels = plan.size.0 * plan.size.1;
+        self.pace.begin_unwatched(&plan.work, pixels);
+        let mut pixel = 0;
+        while pixel < pixels {
+            let next = pixel..pixel + self.pace.pixels(&plan.work, pixels - pixel);
+            let mut source = 0;
+            loop {
+                let part = self.pace.part(&plan.work, &next, source);
+                let launched = self.launch(compute, plan, &part, film, false)?;
+                self.cost.launches += launched.events.len() as u32;
+                self.unwatched.push(launched);
+                source = part.sources.end;
+                if source >= plan.work.source_count {
+                    break;
+                }
+            }
+            pixel = next.end;
+        }
+        Ok(())
+    }
+
+    /// Learns from launches of earlier frames that are over. What failed has told its frame's event.
+    fn learn(&mut self, compute: &Compute) {
+        self.held.retain(|event| matches!(state(event), Ok(false)));
+        for launched in std::mem::take(&mut self.unwatched) {
+            let mut states = launched.events.iter().map(|event| state(event));
+            if states.any(|is_over| matches!(is_over, Ok(false))) {
+                self.unwatched.push(launched);
+                continue;
+            }
+            let times = launched.events.iter().map(|event| run_time(compute, event));
+            if let Ok(time) = times.sum::<Result<Duration>>() {
+                self.pace.measured(launched.samples, time);
+            }
+        }
+    }
+
+    fn launch(
+        &mut self,
+        compute: &Compute,
+        plan: &Plan,
+        part: &Part,
+        film: &mut Film,
+        is_watched: bool,
+    ) -> Result<Launched> {
+        let passes = plan.passes(part);
+        self.open_tiles.reserve(compute, &passes)?;
+        if self.counts_in(plan) {
+            self.counts.reset(compute)?;
+        }
+        let (is_first, is_last) = plan.place_of(part);
+        let film = film.arguments(compute, &part.pixels, plan.size, is_first, is_last)?;
+        let launch = plan.launch(part);
+        let mut common: Vec<(&str, &dyn Argument)> =
+            vec![("integrand", &plan.integrand), ("launch", &launch)];
+        common.extend(self.lists.named(&self.packed.sources));
+        common.push(("counts", self.counts.argument()));
+        common.extend(film.named());
+        if let Some(view) = &plan.view {
+            common.extend([
+                ("view", view as &dyn Argument),
+                ("depths", self.depths.argument()),
+            ]);
+        }
+        let kernel = self.kernels.get(plan.task)?;
+        let enqueue = |more: &[(&str, &dyn Argument)], items: usize, group: usize| {
+            kernel.launch(compute, &[&common, more].concat(), items, group)
+        };
+        // On PoCL groups of 4 to 64 are equally fast, 128 leave a core idle on small images; one work-item for several
+        // spans of lanes gains nothing.
+        let device = compute.device();
+        let group = match device.device_type {
+            DeviceType::Gpu => 64,
+            _ => 16,
+        };
+        let items = part.pixels.len().div_ceil(self.lanes as usize);
+        let OpenTiles { places, light } = &self.open_tiles;
+        let events = match plan.task.rays {
+            Rays::Pixels => vec![enqueue(&[], items, group)?],
+            Rays::Listed => vec![enqueue(&[("rays", self.lists.rays())], items, group)?],
+            Rays::Tiles => {
+                let workers = tiles::workers(device, &self.options) as usize;
+                let tiles = |pass: &_| {
+                    let items = tiles::groups(pass, device.compute_units) * workers;
+                    let more: [(&str, &dyn Argument); 3] =
+                        [("pass", pass), ("open_tiles", places), ("open_light", light)];
+                    enqueue(&more, items, workers)
+                };
+                passes.iter().map(tiles).collect::<Result<_>>()?
+            }
+        };
+        match is_watched {
+            true if self.counts_in(plan) => self.counts.fetch(compute)?,
+            true => {}
+            false => self.held.extend(self.counts.take_resets()),
+        }
+        Ok(Launched {
+            events,
+            integrals: part.pixels.len() as u64 * (part.sources.end - part.sources.start),
+            samples: part.samples(&plan.work),
+        })
+    }
+
+    /// Whether a plan's kernels count.
+    fn counts_in(&self, plan: &Plan) -> bool {
+        plan.task.rays == Rays::Tiles || self.options.counts_samples
+    }
+
+    /// Waits for the launch under way, if there is one, and learns from it.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if it failed.
+    pub(crate) fn settle(&mut self, compute: &Compute, plan: &Plan) -> Result<()> {
+        let Some(launched) = self.under_way.take() else {
+            return Ok(());
+        };
+        let mut time = Duration::ZERO;
+        for event in &launched.events {
+            time += run_time(compute, event)?;
+        }
+        self.pace.measured(launched.samples, time);
+        let cost = &mut self.cost;
+        cost.kernel += time;
+        cost.launches += launched.events.len() as u32;
+        let counted = self.counts.settle(compute)?;
+        cost.integrals += match plan.task.rays {
+            Rays::Tiles => u64::from(counted[counts::INTEGRALS]),
+            Rays::Pixels | Rays::Listed => launched.integrals,
+        };
+        cost.samples += match plan.task.method {
+            Variant::Simpson => launched.samples as u64,
+            Variant::Exact { .. } => u64::from(counted[counts::NODES]),
+        };
+        Ok(())
+    }
+
+    /// Waits for copies under way. One that failed means a wrong image: it is asked for when everything is over.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if a copy failed.
+    pub(crate) fn settle_uploads(&mut self, compute: &Compute) -> Result<()> {
+        self.depths.settle(compute)?;
+        self.lists.settle(compute)
+    }
+}

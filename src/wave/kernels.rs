@@ -1,0 +1,130 @@
+//! The kernels of the wave, built when a scene first needs them: for its method, and for the kinds of source it has.
+
+use std::collections::HashMap;
+
+use super::kinds::{Present, resolve};
+use super::pack::layout::STRUCTS;
+use super::{Rule, counts, tiles};
+use crate::error::{Error, Result};
+use crate::opencl::{Compute, FilmFormat, Kernel, Program, RendererOptions};
+use crate::scene::CORE_FLOOR;
+use crate::scene::kinds::KIND_COUNT;
+
+/// What a kernel is built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct Task {
+    pub method: Variant,
+    /// Which kinds of source the scene has.
+    pub kinds: Present,
+    /// Whether any source falls off with the squared distance.
+    pub has_squares: bool,
+    /// Whether depths end the rays.
+    pub has_depth: bool,
+    pub film: FilmFormat,
+    pub rays: Rays,
+}
+
+/// Which rays a kernel takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Rays {
+    /// Every pixel's.
+    Pixels,
+    /// A few of every tile, more next to cores.
+    Tiles,
+    /// Those of a list.
+    Listed,
+}
+
+/// A way to integrate that has kernels of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Variant {
+    Simpson,
+    Exact {
+        /// Of the rule: what its kernels are built with.
+        nodes: u32,
+        coarse: bool,
+    },
+}
+
+/// Every kernel built so far.
+#[derive(Debug, Default)]
+pub(super) struct Kernels(HashMap<Task, Kernel>);
+
+impl Kernels {
+    /// Makes sure of a kernel; its program if it was built now. `rule` is what the method `exact` integrates with.
+    ///
+    /// # Errors
+    /// As [`Program::build`].
+    pub(super) fn prepare(
+        &mut self,
+        compute: &Compute,
+        options: &RendererOptions,
+        task: Task,
+        rule: &Rule,
+    ) -> Result<Option<Program>> {
+        if self.0.contains_key(&task) {
+            return Ok(None);
+        }
+        let (file, name) = match task.rays {
+            Rays::Pixels => ("wave/render.cl", "render"),
+            Rays::Tiles => ("wave/tiles/tiles.cl", "tiles"),
+            Rays::Listed => ("wave/trace.cl", "trace"),
+        };
+        let text = resolve(file, &task.kinds);
+        let definitions = task_definitions(compute, options, task, rule);
+        let program = Program::build(compute, text, &definitions, options)?;
+        self.0.insert(task, program.kernel(name)?);
+        Ok(Some(program))
+    }
+
+    /// Lets a kernel go.
+    pub(super) fn forget(&mut self, task: Task) {
+        self.0.remove(&task);
+    }
+
+    /// How many were built.
+    pub(super) fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// A kernel that was made sure of.
+    pub(super) fn get(&self, task: Task) -> Result<&Kernel> {
+        self.0.get(&task).ok_or_else(|| {
+            Error::Unsupported("a kernel that was never built was launched".to_owned())
+        })
+    }
+}
+
+/// What every program of the wave is built with: the host owns these numbers.
+pub(crate) fn common_definitions(counts_samples: bool) -> String {
+    let sizes: String = STRUCTS
+        .iter()
+        .map(|s| format!(" -D SIZEOF_{}={}", s.name.to_uppercase(), s.size))
+        .collect();
+    let places = counts::definitions();
+    let counting = if counts_samples { " -D COUNT_NODES" } else { "" };
+    format!(" -D CORE_FLOOR={CORE_FLOOR:e}f -D KIND_COUNT={KIND_COUNT}{sizes}{places}{counting}")
+}
+
+fn task_definitions(
+    compute: &Compute,
+    options: &RendererOptions,
+    task: Task,
+    rule: &Rule,
+) -> String {
+    let mut definitions = common_definitions(options.counts_samples);
+    if let Variant::Exact { .. } = task.method {
+        definitions += &rule.definitions();
+    }
+    if task.has_squares {
+        definitions += " -D INVERSE_SQUARES";
+    }
+    if task.has_depth {
+        definitions += " -D DEPTH";
+    }
+    definitions += task.film.definitions();
+    if task.rays == Rays::Tiles {
+        definitions += &tiles::definitions(tiles::workers(compute.device(), options));
+    }
+    definitions
+}

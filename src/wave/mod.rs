@@ -1,0 +1,232 @@
+//! The wave: the engine that integrates light along rays on an OpenCL device. A frame is planned ([`Wave::plan`]), then drawn
+//! into a [`Film`](crate::opencl::Film).
+
+mod counts;
+mod dispatch;
+mod kernels;
+mod kinds;
+mod lists;
+pub mod pack;
+mod partition;
+mod plan;
+mod rule;
+mod self_test;
+mod simpson;
+mod tiles;
+
+use std::ops::Range;
+
+use opencl3::event::Event;
+
+pub(crate) use kernels::common_definitions;
+pub(crate) use kinds::{Present, resolve, resolve_text};
+pub(crate) use plan::{Plan, grain_rows};
+pub use rule::Rule;
+
+use crate::cost::FrameCost;
+use crate::error::Result;
+use crate::image::{DepthImage, ImageSize};
+use crate::opencl::{Compute, FilmFormat, Handle, RendererOptions, UploadedShared};
+use crate::scene::{Method, Ray, Scene, ViewPlane};
+use counts::Counts;
+use dispatch::Launched;
+use kernels::{Kernels, Rays, Task, Variant};
+use lists::Lists;
+use pack::layout::View;
+use pack::{Anchor, PackStamp, PackedSources};
+use partition::Pace;
+use tiles::OpenTiles;
+
+/// The kernels and buffers of a device, which are kept from frame to frame.
+#[derive(Debug)]
+pub struct Wave {
+    options: RendererOptions,
+    /// Instead of the rule that meets the scene's tolerance.
+    rule: Option<Rule>,
+    kernels: Kernels,
+    lanes: u32,
+    packed: PackedSources,
+    lists: Lists,
+    open_tiles: OpenTiles,
+    counts: Counts,
+    depths: UploadedShared<f32>,
+    pace: Pace,
+    cost: FrameCost,
+    /// The launch that somebody waits for.
+    under_way: Option<Launched>,
+    /// Launches of frames that nobody waited for.
+    unwatched: Vec<Launched>,
+    /// Other commands of such frames: PoCL 3.1 aborts where an event fails that was let go before it was over.
+    held: Vec<Handle<Event>>,
+}
+
+impl Wave {
+    /// Makes an engine for a device. Kernels are built when a scene first needs them.
+    ///
+    /// # Errors
+    /// [`crate::Error::Unsupported`] for options that kernels cannot be built for.
+    pub fn new(compute: &Compute, options: &RendererOptions) -> Result<Self> {
+        options.check()?;
+        Ok(Self {
+            rule: None,
+            kernels: Kernels::default(),
+            lanes: options.lanes.unwrap_or(compute.device().lanes),
+            packed: PackedSources::default(),
+            lists: Lists::new(),
+            open_tiles: OpenTiles::default(),
+            counts: Counts::default(),
+            depths: UploadedShared::new("the depth image"),
+            pace: Pace::new(),
+            cost: FrameCost::default(),
+            under_way: None,
+            unwatched: Vec::new(),
+            held: Vec::new(),
+            options: options.clone(),
+        })
+    }
+
+    /// Integrates by this rule, whatever the tolerance; `None`: by the one that meets it.
+    pub(crate) fn set_rule(&mut self, rule: Option<Rule>) {
+        self.rule = rule;
+    }
+
+    /// What was drawn since the frame began cost.
+    pub(crate) fn cost(&self) -> FrameCost {
+        self.cost
+    }
+
+    /// How many kernels were built.
+    pub(crate) fn kernel_count(&self) -> usize {
+        self.kernels.count()
+    }
+
+    /// An image of the scene that is cut at multiples of so many rows is the same to the bit as in one piece.
+    pub(crate) fn grain_rows(&mut self, scene: &Scene) -> u32 {
+        grain_rows(scene, self.packed.facts(scene).has_both_signs)
+    }
+
+    /// Plans the frame of a valid scene: packs it, uploads what changed, and makes sure of the kernels.
+    ///
+    /// # Errors
+    /// As [`crate::Renderer::render`].
+    pub(crate) fn plan(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        film: FilmFormat,
+    ) -> Result<Plan> {
+        let plane = ViewPlane::new(&scene.camera, scene.image);
+        // The corner pixels are the farthest from the eye.
+        let reach = plane.first_pixel.length() + plane.ray_length;
+        let anchor = Anchor::new(scene, plane.eye, reach, plane.ray_length);
+        let depths = scene.depth.as_ref().map(DepthImage::shared_values);
+        self.depths.upload(compute, depths)?;
+        let has_both_signs = self.packed.facts(scene).has_both_signs;
+        let rays = match plan::has_tiles(scene, has_both_signs) {
+            true => Rays::Tiles,
+            false => Rays::Pixels,
+        };
+        let stamp = self.packed.pack(scene, anchor);
+        let task = self.task(scene, rays, film);
+        let view = pack::view(&plane, scene);
+        self.prepare(compute, scene, task, stamp, Some(view), scene.image)
+    }
+
+    /// Plans single rays through a valid scene. Light is measured over the parameter s.
+    ///
+    /// # Errors
+    /// As [`crate::Renderer::render`].
+    pub(crate) fn plan_rays(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        rays: &[Ray],
+    ) -> Result<Plan> {
+        let origin = rays.first().map_or(glam::DVec3::ZERO, |ray| ray.origin);
+        let records: Vec<_> = rays.iter().map(|ray| pack::ray(ray, origin)).collect();
+        let far = |ray: &Ray| ray.origin.distance(origin) + ray.span.length();
+        let reach = rays.iter().map(far).fold(0.0, f64::max);
+        let anchor = Anchor {
+            origin,
+            reach,
+            measure: 1.0,
+        };
+        let stamp = self.packed.pack(scene, anchor);
+        let task = self.task(scene, Rays::Listed, FilmFormat::Floats);
+        let size = ImageSize {
+            width: rays.len() as u32,
+            height: 1,
+        };
+        let plan = self.prepare(compute, scene, task, stamp, None, size)?;
+        self.lists.upload_rays(compute, &records)?;
+        Ok(plan)
+    }
+
+    fn task(&mut self, scene: &Scene, rays: Rays, film: FilmFormat) -> Task {
+        let rule = self.rule_for(scene);
+        Task {
+            method: match scene.integration.method {
+                Method::Simpson { .. } => Variant::Simpson,
+                Method::Exact { .. } => Variant::Exact {
+                    nodes: rule.nodes,
+                    coarse: rule.coarse,
+                },
+            },
+            kinds: self.packed.sources.counts().map(|count| count > 0),
+            has_squares: self.packed.facts(scene).has_squares,
+            has_depth: scene.depth.is_some() && rays != Rays::Listed,
+            film,
+            rays,
+        }
+    }
+
+    fn rule_for(&mut self, scene: &Scene) -> Rule {
+        let has_squares = self.packed.facts(scene).has_squares;
+        let fitting = Rule::of(scene.integration.method.tolerance(), has_squares);
+        self.rule.unwrap_or(fitting)
+    }
+
+    /// Makes sure of the kernels and uploads what changed.
+    fn prepare(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        task: Task,
+        stamp: PackStamp,
+        view: Option<View>,
+        size: ImageSize,
+    ) -> Result<Plan> {
+        let rule = self.rule_for(scene);
+        let nodes = match scene.integration.method {
+            Method::Simpson { divisions } => {
+                // Of a ray that ends early, only the kernel knows where its nodes are.
+                let decay = scene.decay.filter(|_| !task.has_depth);
+                simpson::nodes(divisions, decay)
+            }
+            Method::Exact { .. } => Vec::new(),
+        };
+        let integrand = pack::integrand(scene, &rule, nodes.len() as u32);
+        let plan = Plan::new(
+            task,
+            view,
+            integrand,
+            self.packed.sources.counts(),
+            size,
+            scene.integration.method.tolerance(),
+            compute.device().compute_units,
+        );
+        let (kernels, options) = (&mut self.kernels, &self.options);
+        if let Some(program) = kernels.prepare(compute, options, task, &rule)? {
+            self.self_test(compute, task, &program)?;
+        }
+        self.lists.upload_nodes(compute, &nodes)?;
+        let sources = &self.packed.sources;
+        self.lists.upload_sources(compute, sources, stamp)?;
+        Ok(plan)
+    }
+
+    /// What a band of pixels is, by whole rows.
+    pub(crate) fn pixels_of(scene: &Scene, rows: &Range<u32>) -> Range<u32> {
+        rows.start * scene.image.width..rows.end * scene.image.width
+    }
+}

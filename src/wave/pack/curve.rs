@@ -1,0 +1,159 @@
+//! A Bezier curve on the device (`cl/wave/source/curve.h`), in its own frame: the plane of its parabola, origin C(1/2).
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::{Anchor, Pack, SplinePiece, device_struct, fine, is_square, scene, vector};
+
+/// Below this ratio of `|C2|` to `|C'(1/2)|` a curve counts as straight: the cubic's roots would lose digits to its
+/// far-off vertex, while the kernels' foot on the tangent needs two Newton steps.
+const STRAIGHT: f64 = 1e-3;
+
+/// So does one whose bend is below this share of the distances to it: the cubic's coefficients would overflow.
+const TINY: f64 = 1e-12;
+
+device_struct! {
+    /// A quadratic curve of light.
+    Curve [192] {
+        middle: [f32; 4] = 0,
+        middle_rest: [f32; 4] = 16,
+        velocity: [f32; 4] = 32,
+        velocity_rest: [f32; 4] = 48,
+        second: [f32; 4] = 64,
+        second_rest: [f32; 4] = 80,
+        along: [f32; 4] = 96,
+        across: [f32; 4] = 112,
+        normal: [f32; 4] = 128,
+        emission: [f32; 4] = 144,
+        velocity_along: f32 = 160,
+        velocity_across: f32 = 164,
+        bend: f32 = 168,
+        vertex: f32 = 172,
+        is_straight: u32 = 176,
+        spline_begin: u32 = 180,
+        spline_count: u32 = 184,
+        is_square: u32 = 188,
+    }
+}
+
+impl Pack for scene::Curve {
+    type Device = Curve;
+
+    fn pack(&self, anchor: &Anchor, pieces: &mut Vec<SplinePiece>) -> Curve {
+        let begin = pieces.len();
+        let [b0, b1, b2] = self.control_points;
+        let mut coefficient = self.coefficient;
+        match self.intensity.as_deref() {
+            // A point is nearest at t = 0, whatever the series holds beyond.
+            Some([first, ..]) if b0 == b1 && b1 == b2 => coefficient *= first,
+            Some(series) => pieces.extend(spline_pieces(series)),
+            None => {}
+        }
+        let spline = begin as u32..pieces.len() as u32;
+        curve(anchor, self, anchor.emission(coefficient, self.color), spline)
+    }
+}
+
+fn curve(
+    anchor: &Anchor,
+    curve: &scene::Curve,
+    emission: [f32; 4],
+    spline: Range<u32>,
+) -> Curve {
+    let [b0, b1, b2] = curve.control_points;
+    let c2 = b0 - 2.0 * b1 + b2;
+    let middle = 0.25 * b0 + 0.5 * b1 + 0.25 * b2;
+    let velocity = b2 - b0; // C'(1/2)
+    let bend = c2.length();
+    let far = TINY * (anchor.reach + middle.distance(anchor.origin));
+    let is_straight = bend <= STRAIGHT * velocity.length() || bend < far;
+    // `across` follows C2 where there is any; what lies perpendicular to the velocity serves the rest.
+    let across = c2
+        .try_normalize()
+        .or_else(|| velocity.try_normalize().map(|v| v.any_orthonormal_vector()))
+        .unwrap_or(DVec3::Y);
+    let along = velocity - across * velocity.dot(across);
+    // Exactly 0 on a fold, which runs twice through the same points: equal distances then stay equal.
+    let is_fold = along.length() <= 1e-12 * velocity.length();
+    let (along, velocity_along) = if is_fold {
+        (across.any_orthonormal_vector(), 0.0)
+    } else {
+        (along.normalize(), along.length())
+    };
+    let velocity_across = velocity.dot(across);
+    let (middle, world_velocity, second) = (anchor.position(middle), fine(velocity), fine(c2));
+    Curve {
+        middle: middle.value,
+        middle_rest: middle.rest,
+        velocity: world_velocity.value,
+        velocity_rest: world_velocity.rest,
+        second: second.value,
+        second_rest: second.rest,
+        along: vector(along),
+        across: vector(across),
+        normal: vector(along.cross(across)),
+        emission,
+        velocity_along: velocity_along as f32,
+        velocity_across: velocity_across as f32,
+        bend: bend as f32,
+        vertex: if is_straight {
+            0.0
+        } else {
+            (0.5 * velocity_across / bend) as f32
+        },
+        is_straight: u32::from(is_straight),
+        spline_begin: spline.start,
+        spline_count: spline.end - spline.start,
+        is_square: is_square(curve.profile),
+    }
+}
+
+/// The polynomial pieces of the clamped uniform quadratic B-spline (2015, eq. 14-16): each is a quadratic Bezier whose
+/// inner control value is the weight, and whose ends are the means of two weights, or an end weight itself.
+fn spline_pieces(series: &[f64]) -> impl Iterator<Item = SplinePiece> {
+    let last = series.len() - 1;
+    let joint = move |i: usize| match i {
+        0 => series[0],
+        i if i == last - 1 => series[last],
+        i => 0.5 * (series[i] + series[i + 1]),
+    };
+    (0..last - 1).map(move |i| {
+        let (from, control, to) = (joint(i), series[i + 1], joint(i + 1));
+        SplinePiece {
+            c0: from as f32,
+            c1: (2.0 * (control - from)) as f32,
+            c2: (from - 2.0 * control + to) as f32,
+            padding: 0.0,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::b_spline;
+
+    #[test]
+    fn the_pieces_are_the_spline() {
+        for series in [
+            vec![1.0, 0.6, 0.2, 0.4, 0.8, 0.6, 1.0],
+            vec![2.0, 5.0, 3.0],
+            vec![0.1, 0.9, 0.4, 0.7],
+        ] {
+            let pieces: Vec<_> = spline_pieces(&series).collect();
+            assert_eq!(pieces.len(), series.len() - 2);
+            for k in 0..=100 {
+                let t = f64::from(k) / 100.0;
+                let scaled = t * pieces.len() as f64;
+                let index = (scaled as usize).min(pieces.len() - 1);
+                let x = scaled - index as f64;
+                let piece = pieces[index];
+                let value =
+                    f64::from(piece.c0) + x * (f64::from(piece.c1) + x * f64::from(piece.c2));
+                let expected = b_spline(&series, t);
+                assert!((value - expected).abs() < 1e-6, "{t}: {value} {expected}");
+            }
+        }
+    }
+}

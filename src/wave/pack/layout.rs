@@ -1,0 +1,114 @@
+//! The structs of `cl/view.h` and `cl/wave/types.h`, in the same order. A kind's own stands in its own file.
+
+use crate::opencl::{DeviceStruct, FilmPart, StructLayout, by_value, device_struct};
+use crate::scene::kinds::{KIND_COUNT, for_each_kind};
+
+device_struct! {
+    /// The pixel grid on the projection plane, and the length of the rays that begin there.
+    View [128] {
+        first_pixel: [f32; 4] = 0,
+        column_step: [f32; 4] = 16,
+        row_step: [f32; 4] = 32,
+        first_pixel_rest: [f32; 4] = 48,
+        column_step_rest: [f32; 4] = 64,
+        row_step_rest: [f32; 4] = 80,
+        ray_length: f32 = 96,
+        near_plane: f32 = 100,
+        near_plane_rest: f32 = 104,
+        hides_all: f32 = 108,
+        width: u32 = 112,
+        height: u32 = 116,
+        padding_0: u32 = 120,
+        padding_1: u32 = 124,
+    }
+}
+
+device_struct! {
+    /// What is integrated along the rays, and how.
+    Integrand [32] {
+        softening2: f32 = 0,
+        decay_strength: f32 = 4,
+        decay_beta: f32 = 8,
+        decay_per_beta: f32 = 12,
+        smooth_threshold: f32 = 16,
+        kinked_threshold: f32 = 20,
+        node_count: u32 = 24,
+        padding: u32 = 28,
+    }
+}
+
+device_struct! {
+    /// Which sources of each kind a launch takes.
+    Launch [8 * KIND_COUNT] {
+        begin: [u32; KIND_COUNT] = 0,
+        end: [u32; KIND_COUNT] = 4 * KIND_COUNT,
+    }
+}
+
+device_struct! {
+    /// One pass over tiles of one size.
+    TilePass [56] {
+        size: u32 = 0,
+        inner: u32 = 4,
+        parent_inner: u32 = 8,
+        level: u32 = 12,
+        is_last: u32 = 16,
+        columns: u32 = 20,
+        tile_count: u32 = 24,
+        read_from: u32 = 28,
+        write_to: u32 = 32,
+        word_count: u32 = 36,
+        pixel_step: f32 = 40,
+        most_odd: f32 = 44,
+        most_even: f32 = 48,
+        most_error: f32 = 52,
+    }
+}
+
+device_struct! {
+    /// A ray that is no pixel's.
+    RayRecord [64] {
+        origin: [f32; 4] = 0,
+        origin_rest: [f32; 4] = 16,
+        span: [f32; 4] = 32,
+        span_rest: [f32; 4] = 48,
+    }
+}
+
+device_struct! {
+    /// A quadrature node.
+    Node [8] {
+        s: f32 = 0,
+        weight: f32 = 4,
+    }
+}
+
+device_struct! {
+    /// One piece of a quadratic B-spline.
+    SplinePiece [16] {
+        c0: f32 = 0,
+        c1: f32 = 4,
+        c2: f32 = 8,
+        padding: f32 = 12,
+    }
+}
+
+by_value!(View, Integrand, Launch, TilePass);
+
+macro_rules! list_structs {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        /// Every struct that crosses to the device.
+        pub const STRUCTS: &[StructLayout] = &[
+            View::LAYOUT,
+            FilmPart::LAYOUT,
+            Integrand::LAYOUT,
+            Launch::LAYOUT,
+            TilePass::LAYOUT,
+            RayRecord::LAYOUT,
+            Node::LAYOUT,
+            SplinePiece::LAYOUT,
+            $(super::$kind::$Type::LAYOUT,)*
+        ];
+    };
+}
+for_each_kind!(list_structs);

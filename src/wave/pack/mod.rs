@@ -1,0 +1,190 @@
+//! A scene as the kernels read it: float32, seen from the eye, where float32 resolves best.
+//!
+//! Light near a core depends on small differences of large coordinates: what float32 leaves of a number travels in a field
+//! named `rest` (`cl/fine.h`).
+
+pub mod layout;
+mod view;
+
+use glam::DVec3;
+
+pub use view::{integrand, ray, view};
+
+use crate::opencl::device_struct;
+use crate::scene::kinds::{KIND_COUNT, for_each_kind};
+use crate::scene::{self, Measure, Profile, Scene, SourcesStamp};
+use layout::SplinePiece;
+
+/// Where the float32 coordinates begin, how far the rays go from there, and what every emission is multiplied with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Anchor {
+    /// World space.
+    pub origin: DVec3,
+    /// World units.
+    pub reach: f64,
+    /// `|E - S|` where light is measured by length, else 1.
+    pub measure: f64,
+}
+
+impl Anchor {
+    /// Seen from `origin`, for rays that stay within `reach` of it and are `ray_length` long.
+    pub fn new(scene: &Scene, origin: DVec3, reach: f64, ray_length: f64) -> Self {
+        let measure = match scene.integration.measure {
+            Measure::Length => ray_length,
+            _ => 1.0,
+        };
+        Self {
+            origin,
+            reach,
+            measure,
+        }
+    }
+
+    fn position(&self, point: DVec3) -> Fine {
+        fine(point - self.origin)
+    }
+
+    fn emission(&self, coefficient: f64, color: DVec3) -> [f32; 4] {
+        vector(color * (coefficient * self.measure))
+    }
+}
+
+/// What the packing asks of every kind of source.
+trait Pack {
+    /// The kind's struct on the device.
+    type Device;
+
+    /// Packs the source; a series over its core's parameter goes to `pieces`.
+    fn pack(&self, anchor: &Anchor, pieces: &mut Vec<SplinePiece>) -> Self::Device;
+}
+
+macro_rules! define_sources {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        $(pub mod $kind;)*
+
+        /// A scene's sources as the kernels read them.
+        #[derive(Debug, Clone, Default, PartialEq)]
+        pub struct Sources {
+            $($(#[$doc])* pub $list: Vec<$kind::$Type>,)*
+            /// Pieces of all sources' series.
+            pub spline_pieces: Vec<SplinePiece>,
+        }
+
+        impl Sources {
+            /// Packs all sources of a valid scene.
+            pub fn new(scene: &Scene, anchor: &Anchor) -> Self {
+                let mut packed = Self::default();
+                packed.fill(scene, anchor);
+                packed
+            }
+
+            /// Packs all sources of a valid scene in the place of those that were there.
+            pub fn fill(&mut self, scene: &Scene, anchor: &Anchor) {
+                let pieces = &mut self.spline_pieces;
+                pieces.clear();
+                $(
+                    self.$list.clear();
+                    self.$list.extend(scene.$list.iter().map(|it| it.pack(anchor, pieces)));
+                )*
+            }
+
+            /// How many there are of each kind, in the order of the table.
+            pub fn counts(&self) -> [u64; KIND_COUNT] {
+                [$(self.$list.len() as u64),*]
+            }
+        }
+    };
+}
+for_each_kind!(define_sources);
+
+/// Sources that are packed again only if they changed, or are seen from elsewhere.
+#[derive(Debug, Default)]
+pub struct PackedSources {
+    /// What was packed.
+    pub sources: Sources,
+    stamp: Option<PackStamp>,
+    facts: SourceFacts,
+}
+
+/// Equal only where the packed sources are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PackStamp(SourcesStamp, Anchor);
+
+impl PackedSources {
+    /// Packs the sources of a valid scene.
+    pub fn pack(&mut self, scene: &Scene, anchor: Anchor) -> PackStamp {
+        let stamp = PackStamp(scene.sources_stamp(), anchor);
+        if self.stamp != Some(stamp) {
+            self.stamp = None;
+            self.sources.fill(scene, &anchor);
+            self.stamp = Some(stamp);
+        }
+        stamp
+    }
+
+    /// What the kernels depend on.
+    pub fn facts(&mut self, scene: &Scene) -> &SourceFacts {
+        self.facts.update(scene);
+        &self.facts
+    }
+}
+
+/// What can only be told by a look at every source; looked at again only if they changed.
+#[derive(Debug, Clone, Default)]
+pub struct SourceFacts {
+    stamp: Option<SourcesStamp>,
+    /// Whether any falls off with the squared distance.
+    pub has_squares: bool,
+    /// Whether some may cancel others.
+    pub has_both_signs: bool,
+}
+
+impl SourceFacts {
+    /// Looks at the scene's sources if they changed.
+    pub fn update(&mut self, scene: &Scene) {
+        let stamp = Some(scene.sources_stamp());
+        if self.stamp != stamp {
+            *self = Self {
+                stamp,
+                has_squares: scene.has_profile(Profile::InverseSquare),
+                has_both_signs: scene.has_light_of_both_signs(),
+            };
+        }
+    }
+}
+
+/// A line's point nearest to the eye, and its direction.
+fn line(anchor: &Anchor, point: DVec3, direction: DVec3) -> (Fine, Fine) {
+    let direction = direction.normalize();
+    let to_eye = anchor.origin - point;
+    let nearest_to_eye = point + direction * to_eye.dot(direction);
+    (anchor.position(nearest_to_eye), fine(direction))
+}
+
+fn is_square(profile: Profile) -> u32 {
+    u32::from(profile == Profile::InverseSquare)
+}
+
+/// A vector as two of float32.
+#[derive(Debug, Clone, Copy)]
+struct Fine {
+    value: [f32; 4],
+    rest: [f32; 4],
+}
+
+fn fine(v: DVec3) -> Fine {
+    let value = v.as_vec3();
+    Fine {
+        value: vector(v),
+        rest: vector(v - value.as_dvec3()),
+    }
+}
+
+/// What float32 leaves of a number.
+fn rest(value: f64) -> f32 {
+    (value - f64::from(value as f32)) as f32
+}
+
+fn vector(v: DVec3) -> [f32; 4] {
+    [v.x as f32, v.y as f32, v.z as f32, 0.0]
+}

@@ -1,0 +1,37 @@
+//! A ring of light on the device (`cl/wave/source/torus.h`).
+
+use super::{Anchor, Pack, SplinePiece, device_struct, fine, is_square, rest, scene};
+
+device_struct! {
+    /// A ring of light.
+    Torus [96] {
+        center: [f32; 4] = 0,
+        center_rest: [f32; 4] = 16,
+        axis: [f32; 4] = 32,
+        axis_rest: [f32; 4] = 48,
+        emission: [f32; 4] = 64,
+        major_radius: f32 = 80,
+        major_radius_rest: f32 = 84,
+        is_square: u32 = 88,
+        padding: u32 = 92,
+    }
+}
+
+impl Pack for scene::Torus {
+    type Device = Torus;
+
+    fn pack(&self, anchor: &Anchor, _: &mut Vec<SplinePiece>) -> Torus {
+        let (center, axis) = (anchor.position(self.center), fine(self.axis.normalize()));
+        Torus {
+            center: center.value,
+            center_rest: center.rest,
+            axis: axis.value,
+            axis_rest: axis.rest,
+            emission: anchor.emission(self.coefficient, self.color),
+            major_radius: self.major_radius as f32,
+            major_radius_rest: rest(self.major_radius),
+            is_square: is_square(self.profile),
+            padding: 0,
+        }
+    }
+}

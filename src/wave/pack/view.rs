@@ -1,0 +1,64 @@
+//! Rays, and what is integrated along them, as the kernels read them.
+
+use bytemuck::Zeroable;
+use glam::DVec3;
+
+use super::layout::{Integrand, RayRecord, View};
+use super::{fine, rest};
+use crate::image::{DepthAlong, DepthImage};
+use crate::scene::{Ray, Scene, ViewPlane};
+use crate::wave::Rule;
+
+/// A little less than float32 may say hides all of a ray.
+const MARGIN: f64 = 1e-5;
+
+/// The view plane, and what depths are lengths of.
+pub fn view(plane: &ViewPlane, scene: &Scene) -> View {
+    let [first_pixel, column_step, row_step] =
+        [plane.first_pixel, plane.column_step, plane.row_step].map(fine);
+    let near_plane = match scene.depth.as_ref().map(DepthImage::along) {
+        Some(DepthAlong::Axis) => plane.near,
+        Some(DepthAlong::Ray) | None => 0.0,
+    };
+    View {
+        first_pixel: first_pixel.value,
+        column_step: column_step.value,
+        row_step: row_step.value,
+        first_pixel_rest: first_pixel.rest,
+        column_step_rest: column_step.rest,
+        row_step_rest: row_step.rest,
+        ray_length: plane.ray_length as f32,
+        near_plane: near_plane as f32,
+        near_plane_rest: rest(near_plane),
+        hides_all: ((1.0 - MARGIN) * plane.near) as f32,
+        width: scene.image.width,
+        height: scene.image.height,
+        ..Zeroable::zeroed()
+    }
+}
+
+/// What is integrated, by a rule or by so many nodes.
+pub fn integrand(scene: &Scene, rule: &Rule, node_count: u32) -> Integrand {
+    let softening = scene.integration.softening;
+    Integrand {
+        softening2: (softening * softening) as f32,
+        decay_strength: scene.decay.map_or(1.0, |decay| decay.alpha / decay.beta) as f32,
+        decay_beta: scene.decay.map_or(0.0, |decay| decay.beta) as f32,
+        decay_per_beta: scene.decay.map_or(0.0, |decay| 1.0 / decay.beta) as f32,
+        smooth_threshold: rule.smooth_threshold,
+        kinked_threshold: rule.kinked_threshold,
+        node_count,
+        padding: 0,
+    }
+}
+
+/// A ray, its origin seen from `origin`.
+pub fn ray(ray: &Ray, origin: DVec3) -> RayRecord {
+    let (origin, span) = (fine(ray.origin - origin), fine(ray.span));
+    RayRecord {
+        origin: origin.value,
+        origin_rest: origin.rest,
+        span: span.value,
+        span_rest: span.rest,
+    }
+}

@@ -1,0 +1,149 @@
+//! The quadrature of the method `exact`: how many Gauss-Legendre nodes a panel has, and when it counts as resolved.
+
+
+/// A rule for every panel. A panel is resolved where the two highest Legendre coefficients that its nodes see stay below
+/// a threshold, relative to the integral.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rule {
+    /// Nodes of a panel, an even number.
+    pub nodes: u32,
+    /// Whether a relative error of 2^-14 at each node does not matter.
+    pub coarse: bool,
+    /// The threshold of fields that are smooth along a ray, such as a torus'.
+    pub smooth_threshold: f32,
+    /// The threshold of fields with kinks and jumps, such as a curve's.
+    pub kinked_threshold: f32,
+}
+
+/// The least tolerance for which a rule serves, and the rule: `cargo bench --bench rules` shows what each is good for.
+const RULES: [(f64, Rule); 6] = [
+    (1e-1, rule(4, 1.0, 1e-1)),
+    (1e-2, rule(8, 1e-1, 1e-3)),
+    (1e-3, rule(8, 2e-3, 2e-4)),
+    (1e-4, rule(10, 5e-5, 2e-5)),
+    (1e-5, rule(10, 3e-5, 5e-6)),
+    (0.0, rule(10, 3e-6, 2e-6)),
+];
+
+/// The loosest tolerance whose rule serves squares.
+const MOST_FOR_SQUARES: f64 = 1e-3;
+
+const fn rule(nodes: u32, smooth_threshold: f32, kinked_threshold: f32) -> Rule {
+    Rule {
+        nodes,
+        coarse: nodes <= 8,
+        smooth_threshold,
+        kinked_threshold,
+    }
+}
+
+impl Rule {
+    /// Chooses the rule that meets a tolerance. Fields that fall off with the squared distance have sharper peaks, which
+    /// a loose rule may miss.
+    pub fn of(tolerance: f64, has_squares: bool) -> Self {
+        let most = if has_squares { MOST_FOR_SQUARES } else { 1.0 };
+        let wanted = tolerance.min(most);
+        let serves = |(tolerance, _): &&(f64, Self)| wanted >= *tolerance;
+        let [.., (_, strictest)] = RULES;
+        RULES
+            .iter()
+            .find(serves)
+            .map_or(strictest, |(_, rule)| *rule)
+    }
+
+    /// Gives the rule as the kernels' compiler gets it: nodes in (0,1), their weights, and those weights times the Legendre
+    /// polynomials of the two highest degrees that the nodes can tell apart, one even, one odd.
+    pub fn definitions(&self) -> String {
+        let count = self.nodes as usize;
+        let nodes: Vec<Node> = gauss_legendre(count);
+        let list = |value: fn(&Node, usize) -> f64| {
+            let values: Vec<String> = nodes
+                .iter()
+                .map(|node| format!("{:.9e}f", value(node, count)))
+                .collect();
+            values.join(",")
+        };
+        format!(
+            " -D EXACT -D GAUSS_PAIRS={} -D GAUSS_NODES={{{}}} -D GAUSS_WEIGHTS={{{}}} -D GAUSS_NULL_EVEN={{{}}} \
+             -D GAUSS_NULL_ODD={{{}}}{}",
+            count / 2,
+            list(|node, _| node.x),
+            list(|node, _| node.weight),
+            list(|node, count| node.weight * legendre(count - 2, node.x).0),
+            list(|node, count| node.weight * legendre(count - 1, node.x).0),
+            if self.coarse { " -D COARSE" } else { "" }
+        )
+    }
+}
+
+/// A positive node of the Gauss-Legendre rule on `[-1,1]`, and its weight.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    x: f64,
+    weight: f64,
+}
+
+/// The positive nodes of the rule with `count` nodes, an even number, by Newton's method.
+fn gauss_legendre(count: usize) -> Vec<Node> {
+    let node = |k: usize| {
+        let mut x = (std::f64::consts::PI * (k as f64 + 0.75) / (count as f64 + 0.5)).cos();
+        for _ in 0..10 {
+            let (value, slope) = legendre(count, x);
+            x -= value / slope;
+        }
+        let slope = legendre(count, x).1;
+        Node {
+            x,
+            weight: 2.0 / ((1.0 - x * x) * slope * slope),
+        }
+    };
+    (0..count / 2).map(node).collect()
+}
+
+/// The Legendre polynomial of a degree and its derivative, |x| < 1.
+fn legendre(degree: usize, x: f64) -> (f64, f64) {
+    let (mut before, mut value) = (0.0, 1.0);
+    for k in 0..degree {
+        let k = k as f64;
+        let next = ((2.0 * k + 1.0) * x * value - k * before) / (k + 1.0);
+        (before, value) = (value, next);
+    }
+    (value, degree as f64 * (x * value - before) / (x * x - 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rule_integrates_polynomials_up_to_twice_its_nodes() {
+        for count in [2, 4, 6, 8, 10, 16] {
+            let nodes = gauss_legendre(count);
+            assert_eq!(nodes.len(), count / 2);
+            for degree in (0..2 * count).step_by(2) {
+                let term = |node: &Node| 2.0 * node.weight * node.x.powi(degree as i32);
+                let sum: f64 = nodes.iter().map(term).sum();
+                let exact = 2.0 / (degree as f64 + 1.0);
+                assert!((sum / exact - 1.0).abs() < 1e-13, "{count} {degree}: {sum}");
+            }
+            let term = |node: &Node| 2.0 * node.weight * node.x.powi(2 * count as i32);
+            let sum: f64 = nodes.iter().map(term).sum();
+            let exact = 2.0 / (2.0 * count as f64 + 1.0);
+            assert!((sum / exact - 1.0).abs() > 1e-12, "{count}: {sum}");
+        }
+    }
+
+    #[test]
+    fn stricter_tolerances_have_stricter_rules() {
+        let rule = |tolerance| Rule::of(tolerance, false);
+        let tolerances = [0.5, 1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 1e-12];
+        for pair in tolerances.windows(2) {
+            let (loose, strict) = (rule(pair[0]), rule(pair[1]));
+            assert!(strict.nodes >= loose.nodes);
+            assert!(strict.smooth_threshold <= loose.smooth_threshold);
+            assert!(strict.kinked_threshold <= loose.kinked_threshold);
+        }
+        assert_eq!(rule(1e-3), rule(2e-3));
+        assert_ne!(rule(1e-3), rule(0.9e-3));
+    }
+}

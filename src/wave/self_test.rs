@@ -1,0 +1,208 @@
+//! The first use of freshly built kernels: two small scenes whose light is known from the float64 reference. Drivers have
+//! miscompiled kernels; one that does is refused before it draws.
+
+use std::mem;
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Wave;
+use super::kernels::{Rays, Task, Variant};
+use super::partition::Pace;
+use crate::error::{Error, Result};
+use crate::image::{DepthAlong, DepthImage, ImageSize};
+use crate::opencl::{Compute, Film, FilmFormat, Pixel, Program};
+use crate::reference::Tracer;
+use crate::scene::kinds::for_each_kind;
+use crate::scene::{
+    Camera, Decay, Integration, Method, Profile, Sampling, Scene, Source, ViewPlane,
+};
+
+/// Which pixels are compared: every so many, a number that shares no divisor with the width and the lanes.
+const STRIDE: usize = 97;
+
+/// What is allowed relative to the pixel, if the tolerance is not larger: what float32 and half floats lose.
+const LEAST_LIMIT: f64 = 1e-3;
+
+/// Two tiles wide and high, with room for some that are smooth.
+const SIZE: ImageSize = ImageSize {
+    width: 76,
+    height: 72,
+};
+
+impl Wave {
+    /// Tests kernels that were just built, unless that was done on this device before.
+    ///
+    /// # Errors
+    /// [`Error::SelfTest`] if they compute wrong. The kernels are forgotten.
+    pub(super) fn self_test(
+        &mut self,
+        compute: &Compute,
+        task: Task,
+        program: &Program,
+    ) -> Result<()> {
+        // Another rule is somebody's experiment; simulators take minutes.
+        let is_experiment = self.rule.is_some() || compute.device().is_simulator;
+        if self.options.skips_self_test || is_experiment || program.was_tested() {
+            return Ok(());
+        }
+        // On a queue of its own: the renderer's may wait for a host.
+        let compute = compute.sibling()?;
+        let mut tester = Self::new(&compute, &self.options)?;
+        mem::swap(&mut tester.kernels, &mut self.kernels);
+        let outcome = known_scenes(task).and_then(|scenes| {
+            let mut scenes = scenes.iter();
+            scenes.try_for_each(|scene| tester.check(&compute, task, scene))
+        });
+        mem::swap(&mut tester.kernels, &mut self.kernels);
+        match &outcome {
+            Ok(()) => program.mark_tested(),
+            Err(_) => self.kernels.forget(task),
+        }
+        outcome
+    }
+
+    fn check(&mut self, compute: &Compute, task: Task, scene: &Scene) -> Result<()> {
+        self.pace = Pace::slow(); // several launches for pixels, and for sources
+        let found = self.draw_known(compute, task, scene)?;
+        let plane = ViewPlane::new(&scene.camera, scene.image);
+        let tracer = Tracer::new(scene, scene.integration.method);
+        let limit = scene.integration.method.tolerance().max(LEAST_LIMIT);
+        let compared: Vec<usize> = (0..found.len()).step_by(STRIDE).collect();
+        let wrong = compared.into_par_iter().find_map_any(|index| {
+            let expected = tracer.pixel(scene, &plane, index);
+            let is_right = agrees(found[index], expected, limit);
+            (!is_right).then(|| {
+                format!(
+                    "pixel {index} of the test is {:?}, not {expected:.6}",
+                    found[index]
+                )
+            })
+        });
+        let Some(reason) = wrong else {
+            return Ok(());
+        };
+        let device = compute.device();
+        Err(Error::SelfTest {
+            device: device.name.clone(),
+            driver: format!("{} {}", device.platform, device.driver),
+            reason,
+        })
+    }
+
+    /// Pixels of the known scene, by the very kernels of a task.
+    fn draw_known(&mut self, compute: &Compute, task: Task, scene: &Scene) -> Result<Vec<Pixel>> {
+        let size = scene.image;
+        let mut film = Film::in_format(compute, task.film, size.width, size.height)?;
+        let plan = match task.rays {
+            Rays::Pixels | Rays::Tiles => self.plan(compute, scene, task.film)?,
+            Rays::Listed => {
+                let plane = ViewPlane::new(&scene.camera, size);
+                let ray = |i| plane.ray(i % size.width, i / size.width);
+                let rays: Vec<_> = (0..size.pixels() as u32).map(ray).collect();
+                self.plan_rays(compute, scene, &rays)?
+            }
+        };
+        self.begin(compute, &plan, size.pixels())?;
+        match task.film {
+            FilmFormat::Floats => {
+                film.reserve_band(compute, size.pixels(), 1)?;
+                let nothing = &mut |_: u32| ControlFlow::Continue(());
+                let pixels = 0..size.pixels() as u32;
+                self.draw(compute, &plan, pixels, &mut film, nothing)?;
+            }
+            FilmFormat::Halves | FilmFormat::Image { .. } => {
+                self.draw_unwatched(compute, &plan, &mut film)?;
+            }
+        }
+        let mut pixels = vec![[0.0; 4]; size.pixels()];
+        film.read(compute, &mut pixels)?;
+        self.settle(compute, &plan)?;
+        self.settle_uploads(compute)?;
+        Ok(pixels)
+    }
+}
+
+/// Whether light is within the limit, relative to the brightest channel, and alpha is 1.
+fn agrees(found: Pixel, expected: DVec3, limit: f64) -> bool {
+    let [.., alpha] = found;
+    let allowed = limit * expected.max_element();
+    let channels = found.iter().zip(expected.to_array());
+    let mut errors = channels.map(|(found, expected)| (f64::from(*found) - expected).abs());
+    alpha == 1.0 && errors.all(|error| error <= allowed) // which no NaN is
+}
+
+/// The scenes that a task's kernels are built for, and nothing else: one with decay and depths along the rays, one with
+/// softening and depths along the axis.
+fn known_scenes(task: Task) -> Result<[Scene; 2]> {
+    let mut near = Scene::new(Camera::new(DVec3::new(0.4, -4.0, 1.7), DVec3::ZERO));
+    near.decay = Some(Decay {
+        alpha: 0.1,
+        beta: 0.1,
+    });
+    let mut far = Scene::new(Camera::new(DVec3::new(-1.0, -9.0, 4.0), DVec3::ZERO));
+    far.integration.softening = 0.05;
+    for (scene, along) in [(&mut near, DepthAlong::Ray), (&mut far, DepthAlong::Axis)] {
+        scene.image = SIZE;
+        scene.integration = integration(task, scene.integration.softening);
+        add_specimens(scene, task, Profile::Inverse);
+        if task.has_squares {
+            add_specimens(scene, task, Profile::InverseSquare);
+        }
+        if task.has_depth {
+            let distance = scene.camera.eye.length();
+            let depth = |index: usize| depth(index, distance);
+            let values = (0..SIZE.pixels()).map(depth).collect();
+            scene.depth = Some(DepthImage::new(SIZE, along, values)?);
+        }
+    }
+    Ok([near, far])
+}
+
+/// The tolerance is the strictest that a task's kernels serve (see [`super::Rule`]), or one that float32 meets.
+fn integration(task: Task, softening: f64) -> Integration {
+    let sampling = match task.rays {
+        Rays::Tiles => Sampling::Tiles,
+        Rays::Pixels | Rays::Listed => Sampling::Pixels,
+    };
+    let method = match task.method {
+        Variant::Simpson => Method::Simpson { divisions: 64 },
+        Variant::Exact { nodes, .. } => Method::Exact {
+            tolerance: if nodes <= 4 { 0.1 } else { 1e-3 },
+            sampling,
+        },
+    };
+    Integration {
+        method,
+        softening,
+        ..Integration::default()
+    }
+}
+
+/// A slope up to the sources, with a hole and an edge.
+fn depth(index: usize, distance: f64) -> f32 {
+    let (row, column) = (index / SIZE.width as usize, index % SIZE.width as usize);
+    match row + column {
+        ..50 => (distance * (0.8 + 0.004 * row as f64 + 0.002 * column as f64)) as f32,
+        50..70 => f32::INFINITY,
+        _ => (1.1 * distance) as f32,
+    }
+}
+
+macro_rules! define_specimens {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        /// Adds one source of each kind that a task's kernels know.
+        fn add_specimens(scene: &mut Scene, task: Task, profile: Profile) {
+            let place = match profile {
+                Profile::Inverse => DVec3::new(0.3, 0.2, 0.1),
+                Profile::InverseSquare => DVec3::new(-0.4, 0.5, -0.2),
+            };
+            let mut kinds = task.kinds.into_iter();
+            $(if kinds.next() == Some(true) {
+                scene.$list.push(Source::specimen(place, profile));
+            })*
+        }
+    };
+}
+for_each_kind!(define_specimens);
