@@ -1,5 +1,5 @@
-//! Criterion benches: a frame by resolution and divisions, by kind and number of sources; the exact method by tolerance; packing; reading back against
-//! mapping. `cargo bench --bench frame`
+//! Criterion benches: a frame by resolution and divisions, by kind and number of sources; the exact method by tolerance;
+//! packing; reading back against mapping. `cargo bench --bench frame`
 #![allow(missing_docs)] // criterion's macros make undocumented functions
 #![allow(clippy::unwrap_used)] // a bench that fails stops
 
@@ -7,9 +7,9 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use energywave::bench::{DIVISIONS, RESOLUTIONS, Table, turned};
-use energywave::pack::Sources;
-use energywave::ray::ViewPlane;
+use energywave::internals::ViewPlane;
+use energywave::internals::pack::{Anchor, Sources};
+use energywave::papers::{DIVISIONS, RESOLUTIONS, Table, turned};
 use energywave::scene::{Curve, Cylinder, Method, Sphere, Torus};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
@@ -102,9 +102,8 @@ fn exact(criterion: &mut Criterion) {
             });
         };
         time("simpson 200".to_owned(), &scene);
-        scene.integration.method = Method::Exact;
         for tolerance in [1e-2, 1e-3, 1e-4, 1e-5] {
-            scene.integration.tolerance = tolerance;
+            scene.integration.method = Method::exact(tolerance);
             time(format!("{tolerance:e}"), &scene);
         }
     };
@@ -118,14 +117,8 @@ fn packing(criterion: &mut Criterion) {
     let scene = crowd("spheres", 4096);
     let plane = ViewPlane::new(&scene.camera, scene.image);
     criterion.bench_function("pack 4096 spheres", |bencher| {
-        bencher.iter(|| {
-            black_box(Sources::new(
-                &scene,
-                plane.eye,
-                plane.ray_length,
-                plane.ray_length,
-            ))
-        });
+        let anchor = Anchor::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
+        bencher.iter(|| black_box(Sources::new(&scene, &anchor)));
     });
 }
 

@@ -1,4 +1,4 @@
-//! Where the rules of the method `exact` come from (`src/pack/rule.rs`): error and cost of every number of nodes and
+//! Where the rules of the method `exact` come from (`src/wave/rule.rs`): error and cost of every number of nodes and
 //! every threshold, on random scenes of one ring or one curve. `cargo bench --bench rules`
 #![allow(clippy::unwrap_used, clippy::expect_used)] // a bench that fails stops
 
@@ -7,9 +7,9 @@
 mod random;
 
 use energywave::image::compare;
-use energywave::pack::Rule;
-use energywave::scene::Sampling;
-use energywave::{BuildOptions, Device, RadianceImage, Renderer, Scene, reference};
+use energywave::internals::{Rule, set_rule};
+use energywave::scene::{Method, Sampling};
+use energywave::{Device, RadianceImage, Renderer, RendererOptions, Scene, reference};
 use random::{Kind, scene_of};
 
 const SCENES: u64 = 40;
@@ -17,14 +17,14 @@ const SIZE: u32 = 48;
 const NODES: [u32; 4] = [4, 6, 8, 10];
 const THRESHOLDS: [f32; 10] = [1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6];
 
-fn renderer(rule: Rule, counts_nodes: bool) -> Renderer {
+fn renderer(rule: Rule, counts_samples: bool) -> Renderer {
     let choice = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_else(|_| "cpu".to_owned());
-    let options = BuildOptions {
-        rule: Some(rule),
-        counts_nodes,
-        ..BuildOptions::default()
-    };
-    Renderer::with_options(&Device::select(&choice).unwrap(), &options).unwrap()
+    let mut options = RendererOptions::default();
+    options.counts_samples = counts_samples;
+    let device = Device::select(&choice).unwrap();
+    let mut renderer = Renderer::with_options(&device, &options).unwrap();
+    set_rule(&mut renderer, rule);
+    renderer
 }
 
 /// Relative errors of all pixels of all scenes, in rising order.
@@ -47,7 +47,7 @@ fn nodes(rule: Rule, scenes: &[(Scene, RadianceImage)]) -> f64 {
     let mut renderer = renderer(rule, true);
     let counts = scenes.iter().map(|(scene, _)| {
         renderer.render(scene).unwrap();
-        renderer.last_cost().field_evaluations as f64 / scene.image.pixels() as f64
+        renderer.last_cost().samples as f64 / scene.image.pixels() as f64
     });
     counts.sum::<f64>() / scenes.len() as f64
 }
@@ -57,7 +57,10 @@ fn main() {
         let scenes: Vec<_> = (0..SCENES)
             .map(|seed| {
                 let mut scene = scene_of(kind, seed, SIZE);
-                scene.integration.sampling = Some(Sampling::Pixels);
+                scene.integration.method = Method::Exact {
+                    tolerance: 1e-3,
+                    sampling: Sampling::Pixels,
+                };
                 let expected = reference::render(&scene).unwrap();
                 (scene, expected)
             })

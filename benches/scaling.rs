@@ -10,8 +10,9 @@ mod common;
 use std::fmt::Write;
 use std::time::Duration;
 
-use energywave::bench::{Table, exact_cost, measure};
-use energywave::scene::{Curve, ImageSize, Method, Sampling, Sphere};
+use energywave::image::ImageSize;
+use energywave::papers::{Table, exact_cost, measure};
+use energywave::scene::{Curve, Method, Sampling, Sphere};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 use plotters::prelude::*;
@@ -58,7 +59,7 @@ impl Series {
     fn label(&self) -> String {
         let sampling = match self.sampling {
             Sampling::Tiles => "tiles",
-            Sampling::Pixels => "pixels",
+            _ => "pixels",
         };
         format!("{}, {sampling}", self.name)
     }
@@ -68,7 +69,7 @@ impl Series {
 fn view() -> Scene {
     let mut scene = Table::Torus.scene(512, 200);
     scene.tori.clear();
-    scene.integration.method = Method::Exact;
+    scene.integration.method = Method::default();
     scene
 }
 
@@ -137,10 +138,13 @@ fn series(device: &Device, renderer: &mut Renderer, setups: &[Setup]) -> Vec<Ser
         for size in *sizes {
             for series in &mut both {
                 let mut scene = scene(*size);
-                scene.integration.sampling = Some(series.sampling);
+                scene.integration.method = Method::Exact {
+                    tolerance: 1e-3,
+                    sampling: series.sampling,
+                };
                 let integrals = match series.sampling {
-                    Sampling::Tiles => exact_cost(device, &scene).unwrap().evaluations,
-                    Sampling::Pixels => (scene.image.pixels() * scene.source_count()) as u64,
+                    Sampling::Tiles => exact_cost(device, &scene).unwrap().integrals,
+                    _ => (scene.image.pixels() * scene.source_count()) as u64,
                 };
                 series.points.push(Point {
                     size: *size,
@@ -218,7 +222,7 @@ fn plot(path: &str, x_name: &str, series: &[Series]) {
         let base = colors[index / 2 % 2];
         let color = match one.sampling {
             Sampling::Tiles => base.to_rgba(),
-            Sampling::Pixels => base.mix(0.4),
+            _ => base.mix(0.4),
         };
         let points = one.points.iter().map(|p| (f64::from(p.size), p.seconds));
         let line = LineSeries::new(points, color.stroke_width(2)).point_size(3);
@@ -241,7 +245,7 @@ fn plot(path: &str, x_name: &str, series: &[Series]) {
 #[allow(unsafe_code)] // one call that must come before everything else
 fn main() {
     // SAFETY: nothing has started a thread yet.
-    unsafe { energywave::opencl::keep_pocl_threads_apart() };
+    unsafe { energywave::keep_pocl_threads_apart() };
     let (device, mut renderer) = common::device();
     let by_width = series(
         &device,

@@ -11,10 +11,9 @@ mod host;
 
 use std::time::{Duration, Instant};
 
-use energywave::bench::Table;
-use energywave::opencl::HostTarget;
+use energywave::papers::Table;
 use energywave::scene::{Method, Sampling};
-use energywave::{Device, Renderer, Scene};
+use energywave::{Device, HostTarget, Renderer, Scene};
 use host::Host;
 use opencl3::memory::{CL_FLOAT, CL_HALF_FLOAT, CL_MEM_READ_WRITE};
 
@@ -83,9 +82,11 @@ fn main() {
         let mut scene = table.scene(512, 200);
         (scene.image.width, scene.image.height) = (3840, 2160);
         measure(&format!("{table:?}, Simpson 200"), &scene);
-        scene.integration.method = Method::Exact;
         for sampling in [Sampling::Pixels, Sampling::Tiles] {
-            scene.integration.sampling = Some(sampling);
+            scene.integration.method = Method::Exact {
+                tolerance: 1e-3,
+                sampling,
+            };
             measure(&format!("{table:?}, exact, {sampling:?}"), &scene);
         }
     }

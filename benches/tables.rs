@@ -2,19 +2,22 @@
 //!
 //! `cargo bench --bench tables` prints them; `cargo bench --bench tables -- benches/results/NAME` also writes NAME.md, a
 //! record with machine, device, driver and command, and NAME.svg, frames a second against evaluations a frame.
-#![allow(clippy::unwrap_used)] // a bench that fails stops
+#![allow(clippy::unwrap_used, clippy::panic)] // a bench that fails stops
+#![allow(unsafe_code)] // one call must come before everything else, and a kernel of its own is run
 
 mod common;
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
-use energywave::bench::{DIVISIONS, FRAMES_PER_TURN, RESOLUTIONS, Table, measure, turned};
 use energywave::image::compare;
-use energywave::opencl::{BuildOptions, Compute, DeviceBuffer, OpenClDevice, Program, discover};
-use energywave::pack::{self, layout};
-use energywave::ray::ViewPlane;
-use energywave::{Device, RadianceImage, Scene};
+use energywave::internals::pack::{self, layout};
+use energywave::internals::{
+    self, Compute, DeviceBuffer, FilmPart, OpenClDevice, Program, ViewPlane, discover,
+};
+use energywave::papers::{DIVISIONS, FRAMES_PER_TURN, RESOLUTIONS, Table, measure, turned};
+use energywave::scene::Method;
+use energywave::{Device, RadianceImage, RendererOptions, Scene};
 use glam::DVec3;
 use plotters::prelude::*;
 
@@ -35,10 +38,9 @@ impl Cell {
     }
 }
 
-#[allow(unsafe_code)] // one call that must come before everything else
 fn main() {
     // SAFETY: nothing has started a thread yet.
-    unsafe { energywave::opencl::keep_pocl_threads_apart() };
+    unsafe { energywave::keep_pocl_threads_apart() };
     let (device, mut renderer) = common::device();
     let opencl: OpenClDevice = discover()
         .devices
@@ -79,13 +81,13 @@ struct Plain {
 impl Plain {
     fn new(device: &OpenClDevice, table: Table) -> Self {
         let compute = Compute::new(device).unwrap();
-        let options = BuildOptions {
-            lanes: Some(1),
-            extra: format!("-DIS_TORUS={}", u8::from(table == Table::Torus)),
-            ..BuildOptions::default()
-        };
-        let text = include_str!("plain.cl");
-        let program = Program::build_text(&compute, "benches/plain.cl", text, &options).unwrap();
+        let mut options = RendererOptions::default();
+        options.lanes = Some(1);
+        let kind = format!("-DIS_TORUS={}", u8::from(table == Table::Torus));
+        // SAFETY: the kernel of plain.cl stays within its image either way.
+        let options = unsafe { internals::with_compiler_options(&options, &kind) };
+        let (name, text) = ("benches/plain.cl", include_str!("plain.cl"));
+        let program = internals::build_text(&compute, name, text, &[], &options).unwrap();
         Self { compute, program }
     }
 
@@ -96,12 +98,12 @@ impl Plain {
         let mut image = vec![[0.0_f32; 4]; pixels];
         let output = DeviceBuffer::new(&self.compute, "the image", pixels).unwrap();
         let mut source = DeviceBuffer::new(&self.compute, "the source", 12).unwrap();
-        let part = layout::FilmPart {
+        let part = FilmPart {
             count: pixels as u32,
             ..bytemuck::Zeroable::zeroed()
         };
         let integrand = layout::Integrand {
-            node_count: scene.integration.divisions + 1,
+            node_count: divisions_of(scene) + 1,
             ..bytemuck::Zeroable::zeroed()
         };
         let mut render = |frame: u32, image: &mut [[f32; 4]]| {
@@ -111,15 +113,16 @@ impl Plain {
             source
                 .write(&self.compute, &parameters(&scene, plane.eye))
                 .unwrap();
-            self.program
-                .run(
-                    &self.compute,
-                    "plain",
-                    &[&view, &part, &integrand, &source, &output],
-                    pixels,
-                    64,
-                )
-                .unwrap();
+            let (compute, program) = (&self.compute, &self.program);
+            let arguments: [(&str, &dyn internals::Argument); 5] = [
+                ("view", &view),
+                ("part", &part),
+                ("integrand", &integrand),
+                ("source", &source),
+                ("image", &output),
+            ];
+            // SAFETY: image and source have the sizes that plain.cl expects.
+            unsafe { internals::run(compute, program, "plain", &arguments, pixels, 64) }.unwrap();
             output.read(&self.compute, image).unwrap();
         };
         render(0, &mut image);
@@ -141,6 +144,13 @@ impl Plain {
         }
         times.sort();
         1.0 / times[times.len() / 2].as_secs_f64()
+    }
+}
+
+fn divisions_of(scene: &Scene) -> u32 {
+    match scene.integration.method {
+        Method::Simpson { divisions } => divisions,
+        _ => panic!("the tables are for Simpson's rule"),
     }
 }
 

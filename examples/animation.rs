@@ -5,7 +5,8 @@
 
 use std::path::PathBuf;
 
-use energywave::scene::{Beam, Camera, Decay, Display, ImageSize, Profile, Sphere, ToneMap};
+use energywave::image::{Display, ImageSize, ToneMap};
+use energywave::scene::{Beam, Camera, Decay, Profile, Sphere};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 
@@ -62,7 +63,7 @@ fn scene_at(time: f64) -> Scene {
 
 fn main() -> energywave::Result<()> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_default());
-    let mut renderer = Renderer::new(&Device::best())?;
+    let mut renderer = Renderer::new(&Device::best()?)?;
     for frame in 0..FRAMES {
         let scene = scene_at(f64::from(frame) / f64::from(FRAMES - 1));
         let radiance = renderer.render(&scene)?;

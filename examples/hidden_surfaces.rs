@@ -6,8 +6,9 @@
 
 use std::path::PathBuf;
 
-use energywave::bench::{camera_2010, tetrahedra};
-use energywave::scene::{Beam, Display, ImageSize, Measure, ToneMap};
+use energywave::image::{Display, ImageSize, ToneMap};
+use energywave::papers::{camera_2010, tetrahedra};
+use energywave::scene::{Beam, Measure};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 
@@ -37,6 +38,6 @@ fn main() -> energywave::Result<()> {
 
     // Clones of a depth image share its values; a renderer uploads them once.
     scene.depth = Some(depth);
-    let radiance = Renderer::new(&Device::best())?.render(&scene)?;
+    let radiance = Renderer::new(&Device::best()?)?.render(&scene)?;
     radiance.save(folder.join("hidden-surfaces.png"), &scene.display)
 }

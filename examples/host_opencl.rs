@@ -9,9 +9,9 @@
 use std::path::PathBuf;
 use std::{error, ptr};
 
-use energywave::opencl::HostTarget;
-use energywave::scene::{Camera, Decay, ImageSize, Profile, Torus};
-use energywave::{RadianceImage, Renderer, Scene};
+use energywave::image::ImageSize;
+use energywave::scene::{Camera, Decay, Profile, Torus};
+use energywave::{HostTarget, RadianceImage, Renderer, Scene};
 use glam::DVec3;
 use opencl3::command_queue::CommandQueue;
 use opencl3::context::Context;

@@ -21,6 +21,6 @@ fn main() -> energywave::Result<()> {
         color: DVec3::new(0.15, 0.35, 1.0),
         ..Torus::new(0.9)
     });
-    let radiance = Renderer::new(&Device::best())?.render(&scene)?;
+    let radiance = Renderer::new(&Device::best()?)?.render(&scene)?;
     radiance.save(folder.join("ring.png"), &scene.display)
 }

@@ -5,8 +5,9 @@
 
 use std::path::PathBuf;
 
-use energywave::scene::{Camera, Curve, Decay, ImageSize, Profile};
-use energywave::{BuildOptions, Devices, Renderer, Scene};
+use energywave::image::ImageSize;
+use energywave::scene::{Camera, Curve, Decay, Profile};
+use energywave::{Devices, Renderer, RendererOptions, Scene};
 use glam::DVec3;
 
 fn main() -> energywave::Result<()> {
@@ -32,7 +33,7 @@ fn main() -> energywave::Result<()> {
     });
 
     let devices = Devices::discover().select_all("all")?;
-    let mut renderer = Renderer::on_devices(&devices, &BuildOptions::default())?;
+    let mut renderer = Renderer::on_devices(&devices, &RendererOptions::default())?;
     for frame in 0..8 {
         renderer.render(&scene)?;
         for (device, rows) in devices.iter().zip(renderer.shares()) {

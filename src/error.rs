@@ -52,7 +52,9 @@ pub enum Error {
 
     /// Kernels gave a wrong answer where the right one is known: the driver compiled them wrongly, or the device is
     /// broken. [`RendererOptions::skips_self_test`](crate::RendererOptions::skips_self_test) insists on the device.
-    #[error("{device} computes wrong (driver {driver}): {reason}; update the driver, or choose another device")]
+    #[error(
+        "{device} computes wrong (driver {driver}): {reason}; update the driver, or choose another device"
+    )]
     #[non_exhaustive]
     SelfTest {
         /// Name of the device.

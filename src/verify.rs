@@ -125,9 +125,8 @@ pub fn built_in_rays() -> Result<Vec<KnownRay>> {
 /// # Errors
 /// [`Error::Input`] with line and column if the file cannot be read or understood.
 pub fn rays_from_file(path: &Path) -> Result<Vec<KnownRay>> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        Error::input(path, format!("cannot read: {error}")).caused_by(error)
-    })?;
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Error::input(path, format!("cannot read: {error}")).caused_by(error))?;
     parse(&text, path)
 }
 

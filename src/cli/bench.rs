@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::time::Duration;
 
+use energywave::image::ImageFile;
 use energywave::papers::{
     DIVISIONS, PAPER_CPU_FPS, RESOLUTIONS, Speed, TABLE_2010, Table, exact_cost, measure,
     single_threaded_fps,
 };
-use energywave::image::ImageFile;
 use energywave::scene::{Method, Sampling};
 use energywave::{Device, DeviceType, Error, Renderer, Scene};
 use serde::Serialize;

@@ -10,9 +10,8 @@ use super::{Outcome, choose_devices};
 pub fn run(arguments: RenderArguments) -> Outcome {
     ImageFormat::of(&arguments.output)?;
     let overrides = &arguments.overrides;
-    let scene = Scene::from_file_with(&arguments.scene, |scene, keys| {
-        overrides.apply(scene, keys)
-    })?;
+    let scene =
+        Scene::from_file_with(&arguments.scene, |scene, keys| overrides.apply(scene, keys))?;
     let devices = choose_devices(arguments.device.device.as_deref())?;
     catch_interrupts();
     let output = ImageFile::create(&arguments.output)?;

@@ -23,9 +23,7 @@ impl DepthImage {
         let path = path.as_ref();
         let fail = |reason: String| Error::input(path, reason);
         let faulty = |error| match error {
-            exr::error::Error::Io(error) => {
-                fail(format!("cannot read: {error}")).caused_by(error)
-            }
+            exr::error::Error::Io(error) => fail(format!("cannot read: {error}")).caused_by(error),
             other => fail(format!("not an OpenEXR image: {other}")).caused_by(other),
         };
         let meta = MetaData::read_from_file(path, false).map_err(faulty)?;

@@ -78,11 +78,9 @@ impl ImageFile {
             use std::os::unix::fs::PermissionsExt;
             builder.permissions(std::fs::Permissions::from_mode(0o666)); // less the user's umask
         }
-        let file = builder
-            .tempfile_in(folder)
-            .map_err(|error| {
-                fail(format!("folder {}: {}", folder.display(), error.kind())).caused_by(error)
-            })?;
+        let file = builder.tempfile_in(folder).map_err(|error| {
+            fail(format!("folder {}: {}", folder.display(), error.kind())).caused_by(error)
+        })?;
         Ok(Self {
             path: target,
             format,

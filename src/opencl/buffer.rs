@@ -6,8 +6,7 @@ use std::ptr;
 use bytemuck::Pod;
 use opencl3::event::Event;
 use opencl3::memory::{
-    Buffer, CL_MAP_READ, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_WRITE,
-    CL_MEM_USE_HOST_PTR, ClMem,
+    Buffer, CL_MAP_READ, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_WRITE, CL_MEM_USE_HOST_PTR, ClMem,
 };
 use opencl3::types::{CL_FALSE, CL_TRUE, cl_mem};
 
@@ -91,7 +90,12 @@ impl<T: Pod> DeviceBuffer<T> {
         })
     }
 
-    pub(super) fn with_flags(compute: &Compute, what: &str, len: usize, flags: u64) -> Result<Self> {
+    pub(super) fn with_flags(
+        compute: &Compute,
+        what: &str,
+        len: usize,
+        flags: u64,
+    ) -> Result<Self> {
         let device = &compute.device;
         let len = len.max(1);
         let bytes = (len * size_of::<T>()) as u64;

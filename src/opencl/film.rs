@@ -67,7 +67,10 @@ enum Target {
     /// Likewise, of half floats.
     Halves(cl_mem),
     /// An image of someone else, for all pixels.
-    Image { image: cl_mem, has_halves: bool },
+    Image {
+        image: cl_mem,
+        has_halves: bool,
+    },
     /// The film's own, for tests of what hosts have.
     OwnHalves(DeviceBuffer<u16>),
     OwnImage(Handle<Image>),
@@ -429,7 +432,11 @@ fn half_to_float(bits: u16) -> f32 {
         31 => f32::NAN,
         exponent => (1.0 + fraction) * 2.0_f32.powi(i32::from(exponent) - 15),
     };
-    if bits >> 15 == 1 { -magnitude } else { magnitude }
+    if bits >> 15 == 1 {
+        -magnitude
+    } else {
+        magnitude
+    }
 }
 
 /// Whether an image's channels are half floats or float32; `None`: neither, or not RGBA.

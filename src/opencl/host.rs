@@ -322,10 +322,7 @@ fn check_image(image: &Image, size: (u32, u32)) -> Result<bool> {
     let [format] = format.as_slice() else {
         return Err(unfit("image", "OpenCL does not tell its format"));
     };
-    let (order, kind) = (
-        format.image_channel_order,
-        format.image_channel_data_type,
-    );
+    let (order, kind) = (format.image_channel_order, format.image_channel_data_type);
     halves_of(order, kind).ok_or_else(|| {
         let reason = format!(
             "channels of order {order:#x} and type {kind:#x}; they must be CL_RGBA ({CL_RGBA:#x}) of CL_FLOAT \

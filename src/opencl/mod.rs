@@ -47,6 +47,6 @@ pub(crate) use layout::device_struct;
 pub use layout::{DeviceStruct, StructLayout};
 pub use options::RendererOptions;
 pub use program::Program;
-pub use source::{SHARED, SourceFile, Sources};
 pub(crate) use source::embed;
+pub use source::{SHARED, SourceFile, Sources};
 pub use uploaded::{Uploaded, UploadedShared};

@@ -53,7 +53,9 @@ impl Program {
         let flags = format!("-cl-std=CL1.2 -D LANES={lanes}{definitions} {chosen} {environment}");
         let flags = flags.trim();
         let record = Record::new(device, &text, flags, options);
-        let has_image = ["-D IMAGE", "-D HALVES"].iter().any(|it| flags.contains(it));
+        let has_image = ["-D IMAGE", "-D HALVES"]
+            .iter()
+            .any(|it| flags.contains(it));
         let refused = |code: String, log: String| Error::Build {
             device: device.name.clone(),
             code,

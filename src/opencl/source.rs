@@ -140,13 +140,19 @@ pub(super) fn parameters(text: &str, kernel: &str, has_image: bool) -> Vec<Strin
     for declaration in text[from..to].split(',') {
         let mut rest = declaration;
         if let Some((_, after)) = rest.split_once("KINDS(SOURCE_PARAMETER)") {
-            names.extend(kinds_of(text).into_iter().map(|kind| format!("{kind}_list")));
+            names.extend(
+                kinds_of(text)
+                    .into_iter()
+                    .map(|kind| format!("{kind}_list")),
+            );
             rest = after;
         }
         let last = rest.rsplit(|c| !is_word(c)).find(|word| !word.is_empty());
         match last {
             Some("FILM_PARAMETER") => {
-                let film = ["pixels", "image"].into_iter().take(1 + usize::from(has_image));
+                let film = ["pixels", "image"]
+                    .into_iter()
+                    .take(1 + usize::from(has_image));
                 names.extend(film.map(str::to_owned));
             }
             _ => names.extend(last.map(str::to_owned)),
@@ -157,7 +163,9 @@ pub(super) fn parameters(text: &str, kernel: &str, has_image: bool) -> Vec<Strin
 
 /// The kinds of `#define KINDS(X) X(sphere, Sphere, 0) ...`.
 fn kinds_of(text: &str) -> Vec<&str> {
-    let line = text.lines().find(|line| line.starts_with("#define KINDS(X)"));
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("#define KINDS(X)"));
     let rows = line.unwrap_or("").split(" X(").skip(1);
     rows.filter_map(|row| row.split(',').next()).collect()
 }
@@ -172,7 +180,10 @@ mod tests {
                 ("a.h", "#pragma once\nA\n"),
                 ("x/b.h", "#include \"../a.h\" // why\nB\n"),
                 ("x/each.h", "#pragma each_kind\nmade_for(KIND)\n"),
-                ("main.cl", "#include \"a.h\"\n#include \"x/b.h\"\n#include \"x/each.h\"\nend\n"),
+                (
+                    "main.cl",
+                    "#include \"a.h\"\n#include \"x/b.h\"\n#include \"x/each.h\"\nend\n",
+                ),
             ],
             kinds: vec!["sphere", "torus"],
         }
@@ -181,13 +192,22 @@ mod tests {
     #[test]
     fn includes_are_resolved_once_templates_for_each_kind_and_lines_keep_their_place() {
         let text = sources().resolve("main.cl");
-        assert!(!text.contains("#include") && !text.contains("#error"), "{text}");
+        assert!(
+            !text.contains("#include") && !text.contains("#error"),
+            "{text}"
+        );
         assert_eq!(text.matches("\nA\n").count(), 1, "{text}");
         assert_eq!(text.matches("made_for").count(), 2, "{text}");
         assert!(text.contains("#define KIND torus\n#line 1 \"cl/x/each.h\"\n\nmade_for"));
-        assert!(text.ends_with("#undef KIND\n#line 4 \"cl/main.cl\"\nend\n"), "{text}");
+        assert!(
+            text.ends_with("#undef KIND\n#line 4 \"cl/main.cl\"\nend\n"),
+            "{text}"
+        );
         let missing = sources().resolve_text("mine.cl", "#include \"none.h\"\n");
-        assert!(missing.contains("#error \"no file cl/none.h\""), "{missing}");
+        assert!(
+            missing.contains("#error \"no file cl/none.h\""),
+            "{missing}"
+        );
     }
 
     #[test]
@@ -198,7 +218,15 @@ mod tests {
                     KINDS(SOURCE_PARAMETER) __global const float *const restrict depths,\n  \
                     FILM_PARAMETER, const uint last) {\n}\n";
         let names = |has_image| parameters(text, "draw", has_image);
-        let all = ["view", "sphere_list", "torus_list", "depths", "pixels", "image", "last"];
+        let all = [
+            "view",
+            "sphere_list",
+            "torus_list",
+            "depths",
+            "pixels",
+            "image",
+            "last",
+        ];
         assert_eq!(names(true), all);
         assert_eq!(names(false).len(), 6);
         assert!(parameters(text, "not_draw", true).is_empty());

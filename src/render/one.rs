@@ -83,9 +83,7 @@ impl DeviceRenderer {
         progress: &mut Progress<'_>,
     ) -> Result<Option<Duration>> {
         let built = self.wave.kernel_count();
-        let plan = self
-            .wave
-            .plan(&self.compute, scene, self.film.format())?;
+        let plan = self.wave.plan(&self.compute, scene, self.film.format())?;
         let is_built = self.wave.kernel_count() == built;
         let begun = Instant::now();
         let Rows {
@@ -186,9 +184,7 @@ impl DeviceRenderer {
 
     /// Renders into the film's own buffer and maps it: on a CPU, nothing is copied.
     pub(crate) fn render_mapped(&mut self, scene: &Scene) -> Result<MappedFilm<'_>> {
-        let plan = self
-            .wave
-            .plan(&self.compute, scene, self.film.format())?;
+        let plan = self.wave.plan(&self.compute, scene, self.film.format())?;
         let Self {
             wave,
             film,
@@ -284,7 +280,12 @@ pub(crate) mod tests {
         scene
     }
 
-    fn draw(renderer: &mut DeviceRenderer, scene: &Scene, rows: Range<u32>, stride: usize) -> Vec<f32> {
+    fn draw(
+        renderer: &mut DeviceRenderer,
+        scene: &Scene,
+        rows: Range<u32>,
+        stride: usize,
+    ) -> Vec<f32> {
         let mut target = vec![0.0; rows.len() * stride];
         let wanted = Rows {
             rows,

@@ -119,7 +119,10 @@ mod tests {
         list[0] = 5;
         assert!(first != second && second != list.revision());
         assert_eq!(copy.revision(), first);
-        assert_eq!(List::<i32>::new().revision(), List::<f64>::default().revision());
+        assert_eq!(
+            List::<i32>::new().revision(),
+            List::<f64>::default().revision()
+        );
         assert!(List::from(vec![1, 2]).revision() != first && List::from(vec![1, 2]) == copy);
     }
 }

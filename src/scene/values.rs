@@ -93,9 +93,9 @@ pub(crate) fn direction(key: &'static str, value: DVec3) -> Checked {
 pub(crate) fn read_vector<'de, D: Deserializer<'de>>(reader: D) -> Result<DVec3, D::Error> {
     let numbers = Vec::<f64>::deserialize(reader)?;
     let found = numbers.len();
-    let numbers: [f64; 3] = numbers.try_into().map_err(|_| {
-        serde::de::Error::custom(format!("expected three numbers, found {found}"))
-    })?;
+    let numbers: [f64; 3] = numbers
+        .try_into()
+        .map_err(|_| serde::de::Error::custom(format!("expected three numbers, found {found}")))?;
     Ok(numbers.into())
 }
 

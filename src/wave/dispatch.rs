@@ -172,8 +172,11 @@ impl Wave {
                 let workers = tiles::workers(device, &self.options) as usize;
                 let tiles = |pass: &_| {
                     let items = tiles::groups(pass, device.compute_units) * workers;
-                    let more: [(&str, &dyn Argument); 3] =
-                        [("pass", pass), ("open_tiles", places), ("open_light", light)];
+                    let more: [(&str, &dyn Argument); 3] = [
+                        ("pass", pass),
+                        ("open_tiles", places),
+                        ("open_light", light),
+                    ];
                     enqueue(&more, items, workers)
                 };
                 passes.iter().map(tiles).collect::<Result<_>>()?

@@ -102,7 +102,11 @@ pub(crate) fn common_definitions(counts_samples: bool) -> String {
         .map(|s| format!(" -D SIZEOF_{}={}", s.name.to_uppercase(), s.size))
         .collect();
     let places = counts::definitions();
-    let counting = if counts_samples { " -D COUNT_NODES" } else { "" };
+    let counting = if counts_samples {
+        " -D COUNT_NODES"
+    } else {
+        ""
+    };
     format!(" -D CORE_FLOOR={CORE_FLOOR:e}f -D KIND_COUNT={KIND_COUNT}{sizes}{places}{counting}")
 }
 

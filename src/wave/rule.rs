@@ -1,6 +1,5 @@
 //! The quadrature of the method `exact`: how many Gauss-Legendre nodes a panel has, and when it counts as resolved.
 
-
 /// A rule for every panel. A panel is resolved where the two highest Legendre coefficients that its nodes see stay below
 /// a threshold, relative to the integral.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,7 +9,11 @@ pub(super) fn nodes(divisions: u32, decay: Option<Decay>) -> Vec<Node> {
     let node = |k: u32| {
         let s = f64::from(k) / count;
         let is_end = k == 0 || k == divisions;
-        let factor = if is_end { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
+        let factor = if is_end {
+            1.0
+        } else {
+            f64::from(2 + 2 * (k % 2))
+        };
         let weight = factor / (3.0 * count);
         Node {
             s: s as f32,

@@ -182,7 +182,10 @@ mod tests {
             sources: 0..MOST_SOURCES,
         };
         let words = word_count(&part, &counts);
-        assert!(words <= MOST_WORDS && words + 1 >= MOST_WORDS, "{words} of {MOST_WORDS}");
+        assert!(
+            words <= MOST_WORDS && words + 1 >= MOST_WORDS,
+            "{words} of {MOST_WORDS}"
+        );
     }
 
     #[test]

@@ -188,8 +188,7 @@ impl IntegrationTable {
         let keys = self.keys();
         check_divisions(keys.divisions)?;
         if self.method == MethodName::Simpson && self.sampling == Some(Sampling::Tiles) {
-            let message =
-                "tiles are for the method \"exact\"; Simpson's rule takes every pixel";
+            let message = "tiles are for the method \"exact\"; Simpson's rule takes every pixel";
             return Err(Fault::new("sampling", message));
         }
         check_tolerance(keys.tolerance)

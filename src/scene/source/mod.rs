@@ -56,7 +56,13 @@ impl Brightness {
     }
 
     /// Checks a coefficient and a colour; `weight` is the greatest local intensity.
-    fn check_light(&self, profile: Profile, coefficient: f64, color: DVec3, weight: f64) -> Checked {
+    fn check_light(
+        &self,
+        profile: Profile,
+        coefficient: f64,
+        color: DVec3,
+        weight: f64,
+    ) -> Checked {
         finite("coefficient", coefficient)?;
         vector("color", color)?;
         let brightest = self.of(profile) * weight * coefficient.abs() * color.abs().max_element();
