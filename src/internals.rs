@@ -3,6 +3,7 @@
 //! What can run any kernel, or change what kernels do, is `unsafe`: a kernel may write anywhere.
 #![allow(missing_docs, unsafe_code)]
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 pub use crate::opencl::{
@@ -15,7 +16,7 @@ pub use crate::reference::{
 pub use crate::scene::ViewPlane;
 pub use crate::wave::{Rule, Wave, pack};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::opencl::{RendererOptions, run_time};
 use crate::render::Renderer;
 use crate::scene::Scene;
@@ -26,6 +27,21 @@ use crate::wave;
 pub const KINDS: [&str; KIND_COUNT] = crate::scene::KINDS;
 
 /// Adds options for the OpenCL compiler.
+///
+/// ```
+/// use energywave::internals::with_compiler_options;
+///
+/// // SAFETY: the kernels have no such name.
+/// let options = unsafe { with_compiler_options(&Default::default(), "-D NOTHING") };
+/// ```
+///
+/// Kernels that are built otherwise may write anywhere, so without `unsafe` it does not compile:
+///
+/// ```compile_fail,E0133
+/// use energywave::internals::with_compiler_options;
+///
+/// let options = with_compiler_options(&Default::default(), "-D NOTHING");
+/// ```
 ///
 /// # Safety
 /// Kernels that are built with them stay within their memory.
@@ -73,6 +89,27 @@ pub fn build_text(
 
 /// Runs a kernel over `items` work-items, in groups of `group`, and waits for it: how long the device worked.
 ///
+/// Whoever runs one promises that it stays within its memory:
+///
+/// ```
+/// use energywave::internals::{Compute, Program, run};
+///
+/// fn promised(compute: &Compute, program: &Program) {
+///     // SAFETY: the kernel does nothing.
+///     let _ = unsafe { run(compute, program, "nothing", &[], 1, 1) };
+/// }
+/// ```
+///
+/// Without the promise it does not compile:
+///
+/// ```compile_fail,E0133
+/// use energywave::internals::{Compute, Program, run};
+///
+/// fn promised(compute: &Compute, program: &Program) {
+///     let _ = run(compute, program, "nothing", &[], 1, 1);
+/// }
+/// ```
+///
 /// # Safety
 /// The kernel stays within the memory that it is given.
 ///
@@ -91,26 +128,52 @@ pub unsafe fn run(
     run_time(compute, &event)
 }
 
-/// Draws a whole frame of a valid scene into a film, as a renderer does, and waits for it.
+/// Draws a whole frame into a film, as a renderer does, and waits for it.
 ///
 /// # Errors
-/// As [`Renderer::render`].
+/// As [`Renderer::render`]; [`Error::OutOfMemory`] if the image is larger than one buffer of the device,
+/// [`Error::Unsupported`] if the film is of another size.
 pub fn draw_wave(
     wave: &mut Wave,
     compute: &Compute,
     scene: &Scene,
     film: &mut Film,
 ) -> Result<crate::FrameCost> {
+    scene.validate()?;
     let pixels = scene.image.pixels();
     let plan = wave.plan(compute, scene, film.format())?;
-    film.reserve_band(compute, pixels, plan.grain())?;
+    if film.reserve_band(compute, pixels, plan.grain())? < pixels {
+        let message = "the image is larger than one buffer of the device".to_owned();
+        return Err(Error::OutOfMemory(message));
+    }
     wave.begin(compute, &plan, pixels)?;
-    wave.draw_unwatched(compute, &plan, film)?;
+    film.begin_at(0);
+    let nothing = &mut |_: u32| ControlFlow::Continue(());
+    wave.draw(compute, &plan, 0..pixels as u32, film, nothing)?;
+    wave.settle(compute, &plan)?;
+    wave.settle_uploads(compute)?;
     Ok(wave.cost())
 }
 
 /// Runs a kernel of another engine over all pixels of a film, a work-item for `lanes` of them, and waits for it. The film's
 /// parameters have the names of `cl/film.h`.
+///
+/// ```
+/// use energywave::internals::{Compute, Film, Program, run_on_film};
+///
+/// fn promised(compute: &Compute, program: &Program, film: &mut Film) {
+///     // SAFETY: the kernel stores the pixels that it is told of.
+///     let _ = unsafe { run_on_film(compute, program, "paint", &[], film, (8, 8)) };
+/// }
+/// ```
+///
+/// ```compile_fail,E0133
+/// use energywave::internals::{Compute, Film, Program, run_on_film};
+///
+/// fn promised(compute: &Compute, program: &Program, film: &mut Film) {
+///     let _ = run_on_film(compute, program, "paint", &[], film, (8, 8));
+/// }
+/// ```
 ///
 /// # Safety
 /// The kernel stays within the memory that it is given.

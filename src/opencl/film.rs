@@ -82,6 +82,8 @@ pub struct Film {
     /// Float32 pixels, if any were needed.
     pixels: Option<DeviceBuffer<Pixel>>,
     target: Target,
+    /// Width and height of a target of its own, which takes no other.
+    size: Option<(u32, u32)>,
     /// Number of the pixel in the buffer's first place.
     origin: u32,
     /// Whether the next engine adds its light to what is there.
@@ -102,6 +104,7 @@ impl Film {
         Self {
             pixels: None,
             target: Target::Own,
+            size: None,
             origin: 0,
             adds: false,
             is_unfinished: false,
@@ -127,6 +130,7 @@ impl Film {
             FilmFormat::Image { .. } => Target::OwnImage(create_image(compute, width, height)?),
         };
         Ok(Self {
+            size: (format != FilmFormat::Floats).then_some((width, height)),
             target,
             ..Self::new()
         })
@@ -185,7 +189,8 @@ impl Film {
     /// them are known.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] if light must be gathered and there is no memory for it.
+    /// [`Error::OutOfMemory`] if light must be gathered and there is no memory for it; [`Error::Unsupported`] if a film of
+    /// its own is of another size.
     pub(crate) fn arguments(
         &mut self,
         compute: &Compute,
@@ -194,6 +199,13 @@ impl Film {
         is_first: bool,
         is_last: bool,
     ) -> Result<FilmArguments> {
+        if let Some((own_width, own_height)) = self.size
+            && (own_width, own_height) != (width, height)
+        {
+            return Err(Error::Unsupported(format!(
+                "the film has {own_width}x{own_height} pixels, the image {width}x{height}"
+            )));
+        }
         let part = FilmPart {
             first: pixels.start,
             count: pixels.end - pixels.start,
