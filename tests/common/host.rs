@@ -4,8 +4,8 @@
 
 use std::ptr;
 
-use energywave::opencl::HostTarget;
-use energywave::scene::ImageSize;
+use energywave::HostTarget;
+use energywave::image::ImageSize;
 use half::f16;
 use opencl3::command_queue::CommandQueue;
 use opencl3::context::Context;
@@ -109,6 +109,7 @@ impl Host {
                 values
             }
             HostTarget::Image(image) => self.read_image(image, size, &events),
+            other => panic!("not read here: {other:?}"),
         }
     }
 

@@ -2,7 +2,8 @@
 //! calls and live objects.
 //!
 //! ```text
-//! let layer = Layer::new();                            // first of all; tests of one process run one after another
+//! // Within with_layer(|| { .. }), the body of a test:
+//! let layer = Layer::new();
 //! layer.fail("clEnqueueNDRangeKernel", 2, -5);         // the second next launch fails, once
 //! layer.fail_work("clEnqueueWriteBuffer", 1, -5);      // or: the next copy is taken, and fails in the queue
 //! layer.lose_device(7, -36);                           // or: from the seventh next call on all fail
@@ -13,9 +14,17 @@
 //! ```
 #![allow(unsafe_code)] // calls into the layer's C interface; each block says why it is sound
 
+use std::any::type_name_of_val;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
-use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+
+/// The environment variable that tells loaders which layers to load.
+pub const LAYERS: &str = "OPENCL_LAYERS";
+
+/// Runs a test in a process of its own, in which the loader of OpenCL takes the layer in; see [`super::apart::apart`].
+#[track_caller]
+pub fn with_layer<Test: FnOnce()>(test: Test) {
+    super::apart::run(type_name_of_val(&test), &[(LAYERS, &path())], test);
+}
 
 /// Live OpenCL objects of this process: those made, and retains, less releases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,44 +37,27 @@ pub struct Live {
     pub events: i64,
 }
 
-/// The layer, for one test at a time. The fault ends with it.
+/// The layer in this process. The fault ends with it.
 pub struct Layer {
     library: *mut c_void,
-    _alone: MutexGuard<'static, ()>,
 }
 
 impl Layer {
-    /// Loads the layer. The first must come before the process' first call to OpenCL, which is when loaders load layers:
-    /// in a file of tests that use it, all begin with it.
+    /// Finds the layer that the loader took in.
     pub fn new() -> Self {
-        static ALONE: Mutex<()> = Mutex::new(());
-        static ONCE: Once = Once::new();
-        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let path = path();
-        assert!(
-            path.exists(),
-            "there is no {}; build it: cargo build --release --example opencl_layer",
-            path.display()
-        );
-        ONCE.call_once(|| {
-            // SAFETY: every test of the process waits here, and none uses the environment before.
-            unsafe { std::env::set_var("OPENCL_LAYERS", &path) };
-            energywave::opencl::discover(); // wakes the loader
-        });
-        let name = CString::new(path.to_str().unwrap()).unwrap();
+        energywave::internals::discover(); // wakes the loader
+        let name = CString::new(path.as_str()).unwrap();
         // SAFETY: a library of this repository, which the loader has loaded before: the same path is the same library.
         let library = unsafe { dlopen(name.as_ptr(), LOAD_NOW) };
-        assert!(!library.is_null(), "{} is no library", path.display());
-        let layer = Self {
-            library,
-            _alone: alone,
-        };
+        assert!(!library.is_null(), "{path} is no library");
+        let layer = Self { library };
         // SAFETY: the layer's own signature.
         let is_loaded: extern "C" fn() -> bool = unsafe { layer.symbol(c"layer_is_loaded") };
         assert!(
             is_loaded(),
             "the OpenCL loader took no layer in: these tests need one that has layers (ocl-icd from 2.3.0 on, Khronos'), and \
-             no call to OpenCL before Layer::new()"
+             with_layer around each test"
         );
         layer
     }
@@ -156,11 +148,17 @@ impl Drop for Layer {
 }
 
 /// The layer's library: cargo builds examples beside the tests.
-fn path() -> PathBuf {
+pub fn path() -> String {
     use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
     let test = std::env::current_exe().unwrap();
     let folder = test.parent().unwrap().parent().unwrap().join("examples");
-    folder.join(format!("{DLL_PREFIX}opencl_layer{DLL_SUFFIX}"))
+    let path = folder.join(format!("{DLL_PREFIX}opencl_layer{DLL_SUFFIX}"));
+    let path = path.to_str().unwrap();
+    assert!(
+        std::fs::exists(path).unwrap(),
+        "there is no {path}; build it: cargo build --release --example opencl_layer"
+    );
+    path.to_owned()
 }
 
 const LOAD_NOW: c_int = 2; // RTLD_NOW

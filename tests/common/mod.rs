@@ -1,7 +1,8 @@
-//! What the integration tests share. Each test file uses a part of it.
-#![allow(dead_code)] // every test file is a crate of its own and uses its own part
+//! What the tests share.
+#![allow(dead_code)] // every folder of tests is a crate of its own and uses its own part
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
 
+pub mod apart;
 pub mod host;
 #[cfg(unix)] // loads a shared library
 pub mod layer;
@@ -10,13 +11,15 @@ pub mod program;
 pub mod random;
 pub mod tile_scenes;
 
-use energywave::image::{DepthAlong, DepthImage};
-use energywave::image::{Difference, compare};
-use energywave::opencl::{Compute, OpenClDevice, discover};
+use std::path::PathBuf;
+
+use energywave::image::{DepthAlong, DepthImage, Difference, ImageSize, compare};
+use energywave::internals::{Compute, OpenClDevice, discover, with_compiler_options};
 use energywave::scene::{
-    Beam, Camera, Curve, Cylinder, Decay, ImageSize, Method, Profile, Sphere, Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Method, MethodKeys, Profile, Sampling, Sphere,
+    Torus,
 };
-use energywave::{BuildOptions, Device, DeviceType, RadianceImage, Renderer, Scene};
+use energywave::{Device, DeviceType, RadianceImage, Renderer, RendererOptions, Scene, reference};
 use glam::DVec3;
 
 /// Every lane width that the kernels can be built for; only the device's own on Intel's CPU runtime, which compiles each
@@ -54,24 +57,32 @@ pub fn compute() -> Compute {
     Compute::new(device).unwrap()
 }
 
-pub fn options(lanes: u32, extra: &str) -> BuildOptions {
-    BuildOptions {
-        lanes: Some(lanes),
-        extra: extra.to_owned(),
-        skips_self_test: true, // spoiled kernels are to be seen
-        ..BuildOptions::default()
-    }
+pub fn options(lanes: u32, extra: &str) -> RendererOptions {
+    let mut options = RendererOptions::default();
+    options.lanes = Some(lanes);
+    options.skips_self_test = true; // spoiled kernels are to be seen
+    compiled_with(&options, extra)
+}
+
+/// Adds options for the OpenCL compiler, such as those that spoil a kernel.
+#[allow(unsafe_code)]
+pub fn compiled_with(options: &RendererOptions, extra: &str) -> RendererOptions {
+    // SAFETY: what the tests change are numbers; the one that stores all lanes of a vector has memory behind the image.
+    unsafe { with_compiler_options(options, extra) }
 }
 
 pub fn renderer(lanes: u32, extra: &str) -> Renderer {
     Renderer::with_options(&device(), &options(lanes, extra)).unwrap()
 }
 
+/// Divisions of the Simpson rule where nothing else is said.
+pub const DIVISIONS: u32 = 200;
+
 /// A camera 4 from the origin, as in the paper's figures, decay alpha = beta = 0.1, no sources.
 pub fn empty_scene(width: u32, height: u32) -> Scene {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.3, -3.5, 2.0), DVec3::ZERO));
     scene.image = ImageSize { width, height };
-    scene.integration.method = Method::Simpson;
+    scene.integration.method = Method::simpson(DIVISIONS);
     scene.decay = Some(Decay {
         alpha: 0.1,
         beta: 0.1,
@@ -102,9 +113,8 @@ pub fn beam(tip: [f64; 3], direction: [f64; 3], taper_length: Option<f64>) -> Be
     Beam {
         tip: tip.into(),
         coefficient: 1.4,
-        cap_coefficient: taper_length.is_none().then_some(0.9),
+        end: taper_length.map_or(BeamEnd::Cap(Some(0.9)), BeamEnd::Taper),
         sphere_coefficient: 0.3,
-        taper_length,
         color: DVec3::new(0.8, 0.3, 0.1),
         ..Beam::new(direction.into())
     }
@@ -213,21 +223,87 @@ pub fn meets(found: &Difference, tolerance: f64) -> bool {
     found.p999 <= tolerance.max(MOST_PIXELS) && found.max <= (10.0 * tolerance).max(WORST_PIXEL)
 }
 
-/// The scenes of the repository, so many pixels wide and high, by a method.
-pub fn figures(size: u32, method: Method) -> Vec<(String, Scene)> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
-    let mut figures = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|ending| ending == "toml") {
-            let mut scene = Scene::from_file(&path).unwrap();
-            scene.integration.method = method;
-            (scene.image.width, scene.image.height) = (size, size);
-            scene.depth = scene.depth.map(|depth| resized(&depth, scene.image));
-            let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
-            figures.push((name, scene));
-        }
+/// The image by the float64 Simpson rule, with as many divisions as the scene has.
+pub fn simpson_reference(scene: &Scene) -> RadianceImage {
+    let Method::Simpson { divisions } = scene.integration.method else {
+        panic!("no scene for Simpson's rule: {:?}", scene.integration);
+    };
+    reference::render_simpson(scene, divisions).unwrap()
+}
+
+/// The tolerance of a scene whose method has one.
+pub fn tolerance(scene: &Scene) -> f64 {
+    match scene.integration.method {
+        Method::Exact { tolerance, .. } => tolerance,
+        other => panic!("no tolerance: {other:?}"),
     }
-    assert!(figures.len() >= 27, "only {} scenes", figures.len());
-    figures
+}
+
+/// The scene by the method `exact`, which it has, to another tolerance.
+pub fn at_tolerance(scene: &Scene, wanted: f64) -> Scene {
+    let mut scene = scene.clone();
+    match &mut scene.integration.method {
+        Method::Exact { tolerance, .. } => *tolerance = wanted,
+        other => panic!("no tolerance: {other:?}"),
+    }
+    scene
+}
+
+/// The scene by the method `exact`, which it has, sampled in another way.
+pub fn sampled(scene: &Scene, wanted: Sampling) -> Scene {
+    let mut scene = scene.clone();
+    match &mut scene.integration.method {
+        Method::Exact { sampling, .. } => *sampling = wanted,
+        other => panic!("no sampling: {other:?}"),
+    }
+    scene
+}
+
+/// The method `exact` to its default tolerance.
+pub fn by(sampling: Sampling) -> Method {
+    Method::Exact {
+        tolerance: 1e-3,
+        sampling,
+    }
+}
+
+/// Simpson's rule as a scene file describes it.
+pub fn simpson_of(keys: &MethodKeys) -> Method {
+    Method::simpson(keys.divisions)
+}
+
+/// The method `exact` as a scene file describes it.
+pub fn exact_of(keys: &MethodKeys) -> Method {
+    Method::Exact {
+        tolerance: keys.tolerance,
+        sampling: keys.sampling,
+    }
+}
+
+/// The paths of the repository's scenes.
+pub fn scene_files() -> Vec<PathBuf> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+    let entries = std::fs::read_dir(folder).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let scenes: Vec<PathBuf> = paths
+        .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
+        .collect();
+    assert!(scenes.len() >= 27, "only {} scenes", scenes.len());
+    scenes
+}
+
+/// The scenes of the repository, so many pixels wide and high, by a method.
+pub fn figures(size: u32, method: fn(&MethodKeys) -> Method) -> Vec<(String, Scene)> {
+    let figure = |path: PathBuf| {
+        let by_method = |scene: &mut Scene, keys: &MethodKeys| {
+            scene.integration.method = method(keys);
+            Ok(())
+        };
+        let mut scene = Scene::from_file_with(&path, by_method).unwrap();
+        (scene.image.width, scene.image.height) = (size, size);
+        scene.depth = scene.depth.map(|depth| resized(&depth, scene.image));
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        (name, scene)
+    };
+    scene_files().into_iter().map(figure).collect()
 }

@@ -1,8 +1,9 @@
 //! Random scenes of every kind of source, the same for the same seed.
 
 use energywave::Scene;
+use energywave::image::ImageSize;
 use energywave::scene::{
-    Beam, Camera, Curve, Cylinder, Decay, ImageSize, Measure, Method, Sphere, Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Measure, Method, Sphere, Torus,
 };
 use fastrand::Rng;
 use glam::DVec3;
@@ -47,7 +48,7 @@ pub fn random_view(random: &mut Rng, size: u32) -> Scene {
         width: size,
         height: size,
     };
-    scene.integration.method = Method::Exact;
+    scene.integration.method = Method::default();
     if random.u32(0..4) > 0 {
         scene.decay = Some(Decay {
             alpha: spread(random, 0.1, 1.0),
@@ -82,13 +83,19 @@ pub fn add_source(random: &mut Rng, kind: Kind, scene: &mut Scene) {
         }),
         Kind::Beam => {
             let has_taper = random.bool();
+            let tip = point(random, 1.0);
+            let cap = (!has_taper && random.bool()).then(|| spread(random, 0.1, 5.0));
+            let sphere_coefficient = if random.bool() { random.f64() } else { 0.0 };
+            let end = match has_taper {
+                true => BeamEnd::Taper(spread(random, 0.01, 3.0)),
+                false => BeamEnd::Cap(cap),
+            };
             scene.beams.push(Beam {
-                tip: point(random, 1.0),
+                tip,
                 coefficient,
                 color,
-                cap_coefficient: (!has_taper && random.bool()).then(|| spread(random, 0.1, 5.0)),
-                sphere_coefficient: if random.bool() { random.f64() } else { 0.0 },
-                taper_length: has_taper.then(|| spread(random, 0.01, 3.0)),
+                end,
+                sphere_coefficient,
                 ..Beam::new(point(random, 1.0))
             });
         }

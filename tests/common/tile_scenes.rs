@@ -1,8 +1,9 @@
 //! Views and sources meant to fool a test of smoothness.
 
 use energywave::Scene;
-use energywave::ray::ViewPlane;
-use energywave::scene::{ImageSize, Method};
+use energywave::image::ImageSize;
+use energywave::internals::ViewPlane;
+use energywave::scene::{BeamEnd, Method};
 use glam::DVec3;
 
 /// No multiple of any tile, more than one of the largest.
@@ -14,7 +15,7 @@ pub const SIZE: ImageSize = ImageSize {
 pub fn view(eye: [f64; 3], target: [f64; 3]) -> Scene {
     let mut scene = super::empty_scene(SIZE.width, SIZE.height);
     (scene.camera.eye, scene.camera.target) = (eye.into(), target.into());
-    scene.integration.method = Method::Exact;
+    scene.integration.method = Method::default();
     scene
 }
 
@@ -112,7 +113,7 @@ pub fn hard_scenes() -> Vec<(&'static str, Scene)> {
     (scene.camera.near, scene.camera.ray_length) = (0.5, Some(4.0));
     scene.decay = None;
     let mut beam = super::beam([0.1, 0.2, -0.1], [2.0, 1.0, 0.5], None);
-    (beam.cap_coefficient, beam.sphere_coefficient) = (Some(0.0), 0.05);
+    (beam.end, beam.sphere_coefficient) = (BeamEnd::Cap(Some(0.0)), 0.05);
     scene.beams.push(beam);
     scenes.push(("a beam without a cap", scene));
 
@@ -176,7 +177,7 @@ pub fn hard_scenes() -> Vec<(&'static str, Scene)> {
     }
 
     let mut scene = super::full_scene(SIZE.width, SIZE.height);
-    scene.integration.method = Method::Exact;
+    scene.integration.method = Method::default();
     // No pixel looks at the origin, where two curves end.
     scene.camera.target = DVec3::new(0.05, 0.02, 0.03);
     scene.decay = None;

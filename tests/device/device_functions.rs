@@ -1,17 +1,15 @@
 //! Device functions one at a time against float64, on every lane width.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::lane_widths;
+use crate::common;
+use crate::common::lane_widths;
+use energywave::Ray;
 use energywave::Scene;
-use energywave::opencl::{Argument, Compute, DeviceBuffer, Program};
-use energywave::pack::Sources;
-use energywave::ray::Ray;
-use energywave::reference::{self, b_spline};
+use energywave::internals::b_spline;
+use energywave::internals::pack::{Anchor, Sources};
+use energywave::internals::{self, Argument, Compute, DeviceBuffer, KINDS, Program};
 use glam::DVec3;
 
-const FUNCTIONS: &str = include_str!("cl/functions.cl");
+const FUNCTIONS: &str = include_str!("../cl/functions.cl");
 
 /// Four Newton steps leave a few roundings of float32.
 const CUBE_ROOT_ERROR: f64 = 5e-7;
@@ -41,7 +39,8 @@ impl Bench {
     fn new(lanes: u32, extra: &str) -> Self {
         let compute = common::compute();
         let options = common::options(lanes, extra);
-        let program = Program::build_text(&compute, "functions.cl", FUNCTIONS, &options).unwrap();
+        let program =
+            internals::build_text(&compute, "functions.cl", FUNCTIONS, &KINDS, &options).unwrap();
         Self { compute, program }
     }
 
@@ -51,21 +50,32 @@ impl Bench {
         buffer
     }
 
-    /// Runs a kernel on lists of 16 n values; the last `results` arguments are written.
-    fn run(&self, kernel: &str, inputs: &[&[f32]], count: usize, results: usize) -> Vec<Vec<f32>> {
+    /// Runs a kernel on lists of 16 n values, by their parameters' names; the `results` are written.
+    #[allow(unsafe_code)]
+    fn run(
+        &self,
+        kernel: &str,
+        inputs: &[(&str, &[f32])],
+        count: usize,
+        results: &[&str],
+    ) -> Vec<Vec<f32>> {
         assert_eq!(count % 16, 0);
-        let uploaded: Vec<_> = inputs.iter().map(|values| self.upload(values)).collect();
-        let outputs: Vec<_> = (0..results)
+        let uploaded: Vec<_> = inputs
+            .iter()
+            .map(|(_, values)| self.upload(values))
+            .collect();
+        let outputs: Vec<_> = results
+            .iter()
             .map(|_| self.upload(&vec![f32::NAN; count]))
             .collect();
-        let arguments: Vec<&dyn Argument> = uploaded
-            .iter()
-            .chain(&outputs)
-            .map(|buffer| buffer as &dyn Argument)
+        let names = inputs.iter().map(|(name, _)| name).chain(results);
+        let arguments: Vec<(&str, &dyn Argument)> = names
+            .zip(uploaded.iter().chain(&outputs))
+            .map(|(name, buffer)| (*name, buffer as &dyn Argument))
             .collect();
         let items = count / self.program.lanes as usize;
-        self.program
-            .run(&self.compute, kernel, &arguments, items, 1)
+        // SAFETY: each work-item takes and gives LANES values of lists of `count`.
+        unsafe { internals::run(&self.compute, &self.program, kernel, &arguments, items, 1) }
             .unwrap();
         let read = |buffer: &DeviceBuffer<f32>| {
             let mut values = vec![0.0; count];
@@ -76,12 +86,19 @@ impl Bench {
     }
 }
 
+/// Where the sources of these tests are seen from.
+const ANCHOR: Anchor = Anchor {
+    origin: DVec3::ZERO,
+    reach: 20.0,
+    measure: 1.0,
+};
+
 /// Worst relative error of the inverse cube root over 60 powers of ten.
 fn cube_root_error(bench: &Bench) -> f64 {
     let values: Vec<f32> = (0..960)
         .map(|i| 10_f32.powf(i as f32 / 16.0 - 30.0))
         .collect();
-    let found = &bench.run("cube_root", &[&values], values.len(), 1)[0];
+    let found = &bench.run("cube_root", &[("a", &values)], values.len(), &["result"])[0];
     let error = |(a, y): (&f32, &f32)| (f64::from(*y) * f64::from(*a).cbrt() - 1.0).abs();
     values.iter().zip(found).map(error).fold(0.0, f64::max)
 }
@@ -105,12 +122,12 @@ fn powers_of_two_and_logarithms_are_within_a_few_roundings() {
     let values: Vec<f32> = powers.iter().map(|x| x.exp2()).collect();
     for lanes in lane_widths() {
         let bench = Bench::new(lanes, "");
-        let found = &bench.run("powers", &[&powers], powers.len(), 1)[0];
+        let found = &bench.run("powers", &[("x", &powers)], powers.len(), &["result"])[0];
         for (x, value) in powers.iter().zip(found) {
             let error = (f64::from(*value) / f64::from(*x).exp2() - 1.0).abs();
             assert!(error < ELEMENTARY_ERROR, "{lanes} lanes, 2^{x}: {error:e}");
         }
-        let found = &bench.run("logarithms", &[&values], values.len(), 1)[0];
+        let found = &bench.run("logarithms", &[("x", &values)], values.len(), &["result"])[0];
         for (x, value) in values.iter().zip(found) {
             let expected = f64::from(*x).log2();
             let error = (f64::from(*value) - expected).abs() / expected.abs().max(1.0);
@@ -127,7 +144,7 @@ fn the_arctangent_is_within_a_few_roundings() {
     let values: Vec<f32> = (0..1600).map(|i| i as f32 / 1599.0).collect();
     for lanes in lane_widths() {
         let bench = Bench::new(lanes, "");
-        let found = &bench.run("arctangents", &[&values], values.len(), 1)[0];
+        let found = &bench.run("arctangents", &[("x", &values)], values.len(), &["result"])[0];
         for (x, value) in values.iter().zip(found) {
             let error = (f64::from(*value) - f64::from(*x).atan()).abs();
             assert!(error < ELEMENTARY_ERROR, "{lanes} lanes, {x}: {error:e}");
@@ -141,7 +158,8 @@ fn the_cosine_of_a_third_of_the_angle_is_within_its_polynomials_error() {
         .map(|i| (i as f32 / 799.5 - 1.0).clamp(-1.0, 1.0))
         .collect();
     for lanes in lane_widths() {
-        let found = &Bench::new(lanes, "").run("third", &[&values], values.len(), 1)[0];
+        let found =
+            &Bench::new(lanes, "").run("third", &[("x", &values)], values.len(), &["result"])[0];
         for (x, cosine) in values.iter().zip(found) {
             let expected = (f64::from(*x).acos() / 3.0).cos();
             let error = (f64::from(*cosine) - expected).abs();
@@ -194,7 +212,12 @@ fn the_cubics_outer_roots_match_bisection() {
         0.0, 1.0, -1.0, 8.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1e-5, -1e-5, 1e-5, -1e-5, 1.0, -1.0,
     ]);
     for lanes in lane_widths() {
-        let found = Bench::new(lanes, "").run("cubic", &[&ps, &hs], ps.len(), 2);
+        let found = Bench::new(lanes, "").run(
+            "cubic",
+            &[("ps", &ps), ("hs", &hs)],
+            ps.len(),
+            &["least", "greatest"],
+        );
         for (i, (p, h)) in ps.iter().zip(&hs).enumerate() {
             let (p, h) = (f64::from(*p), f64::from(*h));
             let (least, greatest) = roots(p, h);
@@ -243,10 +266,11 @@ fn the_spline_matches_de_boor() {
             scene
                 .curves
                 .push(common::curve(common::CURVE_SHAPES[0], Some(series.clone())));
-            let pieces = Sources::new(&scene, DVec3::ZERO, 20.0, 1.0).spline_pieces;
+            let pieces = Sources::new(&scene, &ANCHOR).spline_pieces;
             let count = [pieces.len() as f32];
-            let inputs = [bytemuck::cast_slice(&pieces), &count, &ts];
-            let found = &bench.run("spline", &inputs, ts.len(), 1)[0];
+            let pieces = bytemuck::cast_slice(&pieces);
+            let inputs = [("pieces", pieces), ("count", &count), ("ts", ts.as_slice())];
+            let found = &bench.run("spline", &inputs, ts.len(), &["result"])[0];
             for (t, value) in ts.iter().zip(found) {
                 let expected = b_spline(&series, f64::from(*t));
                 let error = (f64::from(*value) - expected).abs();
@@ -268,7 +292,7 @@ fn distance_error(bench: &Bench, kernel: &str, scene: &Scene, seed: u64) -> f64 
         .map(|_| Ray::between(point(3.0), point(6.0)))
         .collect();
     let ss: Vec<f32> = (0..COUNT).map(|_| random.f32()).collect();
-    let packed = Sources::new(scene, DVec3::ZERO, 20.0, 1.0);
+    let packed = Sources::new(scene, &ANCHOR);
     let source: &[f32] = match kernel {
         "sphere_distance" => bytemuck::cast_slice(&packed.spheres),
         "cylinder_distance" => bytemuck::cast_slice(&packed.cylinders),
@@ -286,11 +310,12 @@ fn distance_error(bench: &Bench, kernel: &str, scene: &Scene, seed: u64) -> f64 
         column(|r| r.span.z),
         ss.clone(),
     ];
-    let mut lists = vec![source];
-    lists.extend(inputs.iter().map(Vec::as_slice));
-    let found = &bench.run(kernel, &lists, COUNT, 1)[0];
+    let names = ["ox", "oy", "oz", "dx", "dy", "dz", "ss"];
+    let mut lists = vec![("first", source)];
+    lists.extend(names.into_iter().zip(inputs.iter().map(Vec::as_slice)));
+    let found = &bench.run(kernel, &lists, COUNT, &["result"])[0];
     // Of a beam's parts one is lit.
-    let sources = reference::sources(scene);
+    let sources = internals::sources(scene);
     let distance = |point| {
         let samples = sources.iter().map(|source| source.field.sample(point));
         samples

@@ -1,11 +1,9 @@
 //! Laws that every image obeys: linearity, order, mirror, motion, scale, and finite light.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{difference, full_scene, renderer};
-use energywave::scene::Decay;
-use energywave::{RadianceImage, Scene, reference};
+use crate::common;
+use crate::common::{difference, full_scene, renderer, simpson_reference};
+use energywave::scene::{BeamEnd, Decay, List, Method};
+use energywave::{RadianceImage, Scene};
 use glam::{DMat3, DVec3};
 
 /// The same light summed from float32 coordinates that round differently.
@@ -17,8 +15,12 @@ fn scale_light(scene: &mut Scene, factor: f64) {
     let of_tori = scene.tori.iter_mut().map(|s| &mut s.coefficient);
     let of_curves = scene.curves.iter_mut().map(|s| &mut s.coefficient);
     let of_beams = scene.beams.iter_mut().flat_map(|b| {
+        let cap = match &mut b.end {
+            BeamEnd::Cap(coefficient) => coefficient.as_mut(),
+            BeamEnd::Taper(_) => None,
+        };
         let parts = [&mut b.coefficient, &mut b.sphere_coefficient];
-        parts.into_iter().chain(&mut b.cap_coefficient)
+        parts.into_iter().chain(cap)
     });
     let all = of_spheres.chain(of_cylinders).chain(of_tori);
     let all = all.chain(of_curves).chain(of_beams);
@@ -42,9 +44,9 @@ fn light_is_linear_in_the_coefficients_and_adds_up() {
 
     let mut sum = RadianceImage::new(scene.image).unwrap();
     let mut part = scene.clone();
-    (part.tori, part.curves) = (Vec::new(), Vec::new());
+    (part.tori, part.curves) = (List::new(), List::new());
     let mut rest = scene.clone();
-    (rest.spheres, rest.cylinders, rest.beams) = (Vec::new(), Vec::new(), Vec::new());
+    (rest.spheres, rest.cylinders, rest.beams) = (List::new(), List::new(), List::new());
     for image in [
         renderer.render(&part).unwrap(),
         renderer.render(&rest).unwrap(),
@@ -80,19 +82,19 @@ fn mapped(scene: &Scene, map: impl Fn(DVec3) -> DVec3) -> Scene {
     let mut scene = scene.clone();
     let camera = &mut scene.camera;
     (camera.eye, camera.target, camera.up) = (map(camera.eye), map(camera.target), map(camera.up));
-    for sphere in &mut scene.spheres {
+    for sphere in scene.spheres.iter_mut() {
         sphere.center = map(sphere.center);
     }
-    for cylinder in &mut scene.cylinders {
+    for cylinder in scene.cylinders.iter_mut() {
         (cylinder.point, cylinder.direction) = (map(cylinder.point), map(cylinder.direction));
     }
-    for beam in &mut scene.beams {
+    for beam in scene.beams.iter_mut() {
         (beam.tip, beam.direction) = (map(beam.tip), map(beam.direction));
     }
-    for torus in &mut scene.tori {
+    for torus in scene.tori.iter_mut() {
         (torus.center, torus.axis) = (map(torus.center), map(torus.axis));
     }
-    for curve in &mut scene.curves {
+    for curve in scene.curves.iter_mut() {
         curve.control_points = curve.control_points.map(&map);
     }
     scene
@@ -132,8 +134,11 @@ fn a_moved_turned_and_scaled_scene_gives_the_same_image() {
         let mut scaled = mapped(&scene, |v| v * scale);
         scaled.camera.near *= scale;
         scaled.tori.iter_mut().for_each(|t| t.major_radius *= scale);
-        let tapers = scaled.beams.iter_mut().flat_map(|b| &mut b.taper_length);
-        tapers.for_each(|length| *length *= scale);
+        for beam in scaled.beams.iter_mut() {
+            if let BeamEnd::Taper(length) = &mut beam.end {
+                *length *= scale;
+            }
+        }
         scale_light(&mut scaled, scale);
         let found = difference(&renderer.render(&scaled).unwrap(), &image);
         assert!(found.max < ROUNDING, "{scale}: {found:?}");
@@ -174,7 +179,7 @@ fn wild_scene(random: &mut fastrand::Rng) -> Scene {
     scene.camera.near = magnitude(random);
     scene.camera.fov_y = 1.0 + 178.0 * random.f64();
     scene.camera.ray_length = Some(magnitude(random));
-    scene.integration.divisions = 8;
+    scene.integration.method = Method::simpson(8);
     scene.decay = random.bool().then(|| Decay {
         alpha: magnitude(random),
         beta: magnitude(random),
@@ -243,7 +248,7 @@ fn a_tiny_curve_on_endless_rays_overflows_nothing() {
         let series = Some(vec![1.0, 0.5, 2.0]);
         scene.curves.push(common::curve(points, series));
         let image = renderer.render(&scene).unwrap();
-        let expected = reference::render_simpson(&scene).unwrap();
+        let expected = simpson_reference(&scene);
         let found = difference(&image, &expected);
         assert!(found.max < ROUNDING, "size {size}: {found:?}");
     }

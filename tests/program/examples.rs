@@ -1,5 +1,4 @@
 //! Every example runs and draws what it says.
-#![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

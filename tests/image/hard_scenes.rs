@@ -1,11 +1,10 @@
 //! The method `exact` where it is hardest: rays through cores and along them, dark and tiny sources, extreme numbers.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::random::{KINDS, Kind, add_source, random_view};
-use common::{WORST_PIXEL, difference, lane_widths, renderer};
-use energywave::scene::{Camera, Curve, Decay, ImageSize, Method};
+use crate::common;
+use crate::common::random::{KINDS, Kind, add_source, random_view};
+use crate::common::{WORST_PIXEL, at_tolerance, difference, lane_widths, renderer};
+use energywave::image::ImageSize;
+use energywave::scene::{Camera, Curve, Decay, Method};
 use energywave::{Scene, reference};
 use glam::DVec3;
 
@@ -14,8 +13,7 @@ fn through_a_core(kind: Kind) -> Scene {
     let mut camera = Camera::new(DVec3::new(0.0, -3.0, 0.0), DVec3::ZERO);
     camera.ray_length = Some(9.0);
     let mut scene = Scene::new(camera);
-    scene.integration.method = Method::Exact;
-    scene.integration.tolerance = 1e-4;
+    scene.integration.method = Method::exact(1e-4);
     scene.decay = Some(Decay {
         alpha: 0.2,
         beta: 0.3,
@@ -77,7 +75,7 @@ fn hard_views() -> Vec<(&'static str, Scene)> {
     let view = |eye: [f64; 3], target: [f64; 3]| {
         let mut scene = common::empty_scene(24, 24);
         (scene.camera.eye, scene.camera.target) = (eye.into(), target.into());
-        scene.integration.method = Method::Exact;
+        scene.integration.method = Method::default();
         scene
     };
     let usual = || view([0.0, -4.0, 2.0], [0.0; 3]);
@@ -167,8 +165,7 @@ fn hard_views_meet_the_tolerance() {
     for (name, scene) in hard_views() {
         let expected = reference::render(&scene).unwrap();
         for tolerance in [1e-3, 1e-5] {
-            let mut scene = scene.clone();
-            scene.integration.tolerance = tolerance;
+            let scene = at_tolerance(&scene, tolerance);
             let found = difference(&renderer.render(&scene).unwrap(), &expected);
             assert!(
                 found.max <= (10.0 * tolerance).max(WORST_PIXEL),
@@ -230,8 +227,7 @@ fn awkward_scene(seed: u64) -> Scene {
             beta: spread(&mut random),
         });
     }
-    scene.integration.tolerance = if random.bool() { 1e-3 } else { 1e-6 };
-    scene
+    at_tolerance(&scene, if random.bool() { 1e-3 } else { 1e-6 })
 }
 
 #[test]

@@ -1,15 +1,12 @@
 //! Kernels kept on disk: the next start takes them, and whatever is wrong with folder or files, the image is right.
 //! Spoiled: an entry with a valid seal over other kernels must spoil the image.
-#![allow(clippy::unwrap_used)]
-
-mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use common::BROKEN_FIELDS;
-use common::program::{Folder, SCENE, device, expect};
+use crate::common::BROKEN_FIELDS;
+use crate::common::program::{Folder, SCENE, device, expect};
 use sha2::{Digest, Sha256};
 
 /// What stands before the body of an entry: the format, and the seal.

@@ -1,11 +1,9 @@
 //! Frames in a host's own OpenCL: its context and queue, its buffer or image, its events.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![allow(unsafe_code)] // hosts call OpenCL
 
-mod common;
-
-use common::host::Host;
-use energywave::opencl::HostTarget;
+use crate::common;
+use crate::common::host::Host;
+use energywave::HostTarget;
 use energywave::scene::{Method, Sampling};
 use energywave::{RadianceImage, Renderer, Scene};
 use opencl3::command_queue::{CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE, CL_QUEUE_PROFILING_ENABLE};
@@ -20,16 +18,15 @@ const RUNNING: i32 = 1;
 /// Every kind of source, in a size that fits no vector and no tile, by each way to take pixels.
 fn scenes() -> Vec<(&'static str, Scene)> {
     let full = common::full_scene(99, 70);
-    let with = |method, sampling| {
+    let with = |method| {
         let mut scene = full.clone();
         scene.integration.method = method;
-        scene.integration.sampling = sampling;
         scene
     };
     vec![
-        ("simpson", with(Method::Simpson, None)),
-        ("pixels", with(Method::Exact, Some(Sampling::Pixels))),
-        ("tiles", with(Method::Exact, Some(Sampling::Tiles))),
+        ("simpson", with(Method::simpson(common::DIVISIONS))),
+        ("pixels", with(common::by(Sampling::Pixels))),
+        ("tiles", with(common::by(Sampling::Tiles))),
     ]
 }
 

@@ -1,36 +1,31 @@
 //! Every kernel on every lane width, small enough for a simulator: `.ci/run` runs this under oclgrind, which watches every
 //! access. On any other device it is one more test, of its own lane width.
-#![allow(clippy::unwrap_used)]
 #![allow(unsafe_code)] // hosts call OpenCL
 
-mod common;
-
-use common::host::Host;
+use crate::common;
+use crate::common::host::Host;
 use energywave::image::DepthAlong;
 use energywave::scene::Method;
-use energywave::verify::{KnownRay, built_in_rays};
-use energywave::{BuildOptions, Renderer};
+use energywave::verify::built_in_rays;
+use energywave::{Renderer, RendererOptions};
 use opencl3::memory::{CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA};
 
 #[test]
 fn every_kernel_runs_on_every_lane_width() {
     println!("device: {}", common::device());
     let mut scene = common::full_scene(7, 5); // 35 pixels: no multiple of any lane width
-    scene.integration.divisions = 4;
     let rays: Vec<_> = built_in_rays()
         .unwrap()
         .iter()
         .take(21)
-        .map(KnownRay::ray)
+        .map(|known| known.ray)
         .collect();
     // As a GPU does it: a group of one lane each shares a tile.
-    let shared_tiles = BuildOptions {
-        tile_workers: Some(16),
-        ..common::options(1, "")
-    };
+    let mut shared_tiles = common::options(1, "");
+    shared_tiles.tile_workers = Some(16);
     let device = common::device();
     let is_simulator = device.name.contains("Oclgrind");
-    let mut builds: Vec<BuildOptions> = common::lane_widths()
+    let mut builds: Vec<RendererOptions> = common::lane_widths()
         .into_iter()
         .filter(|lanes| is_simulator || *lanes == device.lanes)
         .map(|lanes| common::options(lanes, ""))
@@ -39,7 +34,7 @@ fn every_kernel_runs_on_every_lane_width() {
     builds.extend(is_simulator.then_some(shared_tiles));
     for options in builds {
         let mut renderer = Renderer::with_options(&common::device(), &options).unwrap();
-        for method in [Method::Simpson, Method::Exact] {
+        for method in [Method::simpson(4), Method::default()] {
             scene.integration.method = method;
             // Squares behind a wall with an edge.
             let mut hidden = common::squared(&scene);
@@ -52,7 +47,7 @@ fn every_kernel_runs_on_every_lane_width() {
             }));
             let image = renderer.render(&scene).unwrap();
             assert!(image.as_slice().iter().all(|value| value.is_finite()));
-            let traced = renderer.trace(&scene, &rays).unwrap();
+            let traced = renderer.integrate(&scene, &rays).unwrap();
             assert!(traced.iter().flatten().all(|value| value.is_finite()));
             let hidden = renderer.render(&hidden).unwrap();
             assert!(hidden.as_slice().iter().all(|value| value.is_finite()));
@@ -70,7 +65,7 @@ fn frames_for_a_host_touch_nothing_but_their_own() {
         let (context, queue) = (host.context.get(), host.queue.get());
         // SAFETY: both are alive.
         let mut renderer = unsafe { Renderer::on_raw_host(context, queue, &options) }.unwrap();
-        for method in [Method::Simpson, Method::Exact] {
+        for method in [Method::simpson(common::DIVISIONS), Method::default()] {
             let mut scene = common::empty_scene(21, 10);
             scene.integration.method = method;
             scene.spheres.push(common::sphere([0.3, 0.2, 0.1], 1.0));

@@ -1,11 +1,9 @@
 //! The device structs agree between host and device: sizes in every build (`CHECK_SIZE` beside each struct in `cl/`),
-//! offsets at compile time (`src/pack/layout.rs`), and here every field by its name.
-#![allow(clippy::unwrap_used)]
+//! offsets at compile time (`src/opencl/layout.rs`), and here every field by its name.
 
-mod common;
-
-use energywave::opencl::{DeviceBuffer, Program};
-use energywave::pack::layout::{KIND_COUNT, STRUCTS, StructLayout};
+use crate::common;
+use energywave::internals::pack::layout::STRUCTS;
+use energywave::internals::{self, DeviceBuffer, KINDS, StructLayout};
 
 /// A kernel that copies every 32-bit word of every field, reached by the field's name, in the order of the host's list.
 fn copy_fields(layout: &StructLayout) -> String {
@@ -28,6 +26,7 @@ fn copy_fields(layout: &StructLayout) -> String {
 }
 
 /// The words that the device finds in a record whose word k is k + 1.
+#[allow(unsafe_code)]
 fn words_by_name(layout: &StructLayout) -> Vec<u32> {
     let compute = common::compute();
     let count = layout.size / 4;
@@ -37,11 +36,21 @@ fn words_by_name(layout: &StructLayout) -> Vec<u32> {
     let mut output = DeviceBuffer::<u32>::new(&compute, "words", count).unwrap();
     output.write(&compute, &vec![0; count]).unwrap();
     let text = copy_fields(layout);
+    let options = common::options(1, "");
     let program =
-        Program::build_text(&compute, "copy_fields.cl", &text, &common::options(1, "")).unwrap();
-    program
-        .run(&compute, "copy_fields", &[&input, &output], 1, 1)
-        .unwrap();
+        internals::build_text(&compute, "copy_fields.cl", &text, &KINDS, &options).unwrap();
+    // SAFETY: the kernel reads and writes as many words as the record has.
+    unsafe {
+        internals::run(
+            &compute,
+            &program,
+            "copy_fields",
+            &[("record", &input), ("words", &output)],
+            1,
+            1,
+        )
+    }
+    .unwrap();
     let mut words = vec![0; count];
     output.read(&compute, &mut words).unwrap();
     words
@@ -79,8 +88,8 @@ fn two_swapped_fields_are_noticed() {
 fn a_struct_of_another_size_stops_the_build() {
     let compute = common::compute();
     let options = common::options(1, "-DSIZEOF_TORUS=60");
-    let error =
-        Program::build(&compute, &["wave/render.cl"], [true; KIND_COUNT], &options).unwrap_err();
+    let render = "#include \"wave/render.cl\"\n";
+    let error = internals::build_text(&compute, "render", render, &KINDS, &options).unwrap_err();
     let message = error.to_string();
     assert!(message.contains("Torus_has_the_size"), "{message}");
     assert!(message.contains("cl/wave/source/torus.h"), "{message}");

@@ -1,13 +1,9 @@
 //! The program: exit codes, messages and outputs.
-#![allow(clippy::unwrap_used, clippy::panic)]
-#![cfg(unix)] // shells, signals and the loader's environment variables
-
-mod common;
 
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::program::{Folder, PROGRAM, SCENE, device, expect, stderr};
+use crate::common::program::{Folder, PROGRAM, SCENE, device, expect, stderr};
 use energywave::RadianceImage;
 use serde_json::Value;
 
@@ -125,14 +121,14 @@ fn usage_errors_exit_with_2_and_write_nothing() {
 #[test]
 fn depths_hide_light_or_are_refused_before_anything_is_written() {
     let folder = Folder::new();
-    let size = energywave::scene::ImageSize {
+    let size = energywave::image::ImageSize {
         width: 24,
         height: 16,
     };
     let save = |name: &str, size, value: f32| {
         let mut image = energywave::RadianceImage::new(size).unwrap();
         image.as_mut_slice().fill(value);
-        let display = energywave::scene::Display::default();
+        let display = energywave::image::Display::default();
         image.save(folder.path().join(name), &display).unwrap();
     };
     save("near.exr", size, 3.5);
@@ -328,7 +324,7 @@ fn verify_prints_a_row_for_every_ray_and_fails_on_a_wrong_one() {
             .all(|row| row["relative_error"].as_f64().unwrap() < 1e-3)
     );
 
-    let mut rays: Vec<Value> = serde_json::from_str(include_str!("data/rays.json")).unwrap();
+    let mut rays: Vec<Value> = serde_json::from_str(include_str!("../data/rays.json")).unwrap();
     rays.truncate(3);
     rays[1]["simpson_200"] = (rays[1]["simpson_200"].as_f64().unwrap() * 1.01).into();
     let file = folder.path().join("rays.json");

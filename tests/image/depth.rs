@@ -1,15 +1,17 @@
 //! Hidden surfaces: an occluded image is the image of rays cut by hand, by both methods and both samplings, with every
 //! kind of source, and its edges are exact to the pixel.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::occluders::{OCCLUDERS, Occluder};
-use common::random::{KINDS, random_scene, scene_of};
-use common::{depths, difference, lane_widths, meets, renderer};
-use energywave::image::{DepthAlong, compare};
-use energywave::ray::{Ray, ViewPlane};
-use energywave::scene::{Decay, ImageSize, Measure, Method, Profile, Sampling};
+use crate::common;
+use crate::common::occluders::{OCCLUDERS, Occluder};
+use crate::common::random::{KINDS, random_scene, scene_of};
+use crate::common::{
+    at_tolerance, depths, difference, lane_widths, meets, renderer, sampled, simpson_reference,
+    tolerance,
+};
+use energywave::Ray;
+use energywave::image::{DepthAlong, ImageSize, compare};
+use energywave::internals::ViewPlane;
+use energywave::scene::{Decay, Measure, Method, Profile, Sampling};
 use energywave::{RadianceImage, Renderer, Scene, reference};
 use glam::DVec3;
 
@@ -20,6 +22,12 @@ const CUT_BY_HAND: f64 = 1e-5;
 /// far off, and so many pixels in a thousand beyond the other limit.
 const CLOSE_SAMPLE: f64 = 1e-4;
 const CLOSE_SAMPLES: usize = 20;
+
+/// As exactly as float32 can, at every pixel.
+const EXACT: Method = Method::Exact {
+    tolerance: 1e-7,
+    sampling: Sampling::Pixels,
+};
 
 const WAYS: [DepthAlong; 2] = [DepthAlong::Ray, DepthAlong::Axis];
 
@@ -34,8 +42,8 @@ fn with_ends(scene: &Scene, along: DepthAlong, end: impl Fn(u32, u32) -> f64) ->
         let to_plane = plane.ray(column, row).origin.distance(plane.eye);
         let distance = (to_plane + end(column, row) * plane.ray_length).max(0.0);
         match along {
-            DepthAlong::Ray => distance,
             DepthAlong::Axis => distance * plane.near / to_plane,
+            _ => distance,
         }
     });
     let mut scene = scene.clone();
@@ -55,8 +63,8 @@ fn cut_by_hand(renderer: &mut Renderer, scene: &Scene) -> RadianceImage {
         let to_plane = ray.origin.distance(plane.eye);
         let distance = f64::from(depth.as_slice()[index])
             * match depth.along() {
-                DepthAlong::Ray => 1.0,
                 DepthAlong::Axis => to_plane / plane.near,
+                _ => 1.0,
             };
         let end = ((distance - to_plane) / plane.ray_length).clamp(0.0, 1.0);
         pixel[3] = 1.0;
@@ -69,11 +77,12 @@ fn cut_by_hand(renderer: &mut Renderer, scene: &Scene) -> RadianceImage {
             beta: decay.beta / end,
         });
         let measure = match scene.integration.measure {
-            Measure::Parameter => end,
             Measure::Length => end * plane.ray_length,
+            _ => end,
         };
+        scene.integration.measure = Measure::Parameter;
         let cut = Ray::between(ray.origin, ray.at(end));
-        let light = renderer.trace(&scene, &[cut]).unwrap()[0];
+        let light = renderer.integrate(&scene, &[cut]).unwrap()[0];
         for (value, light) in pixel.iter_mut().zip(light) {
             *value = (light * measure) as f32;
         }
@@ -88,8 +97,6 @@ fn cut_scene(index: usize, is_square: bool, method: Method, along: DepthAlong) -
         scene = common::squared(&scene);
     }
     scene.integration.method = method;
-    scene.integration.tolerance = 1e-7;
-    scene.integration.sampling = (method == Method::Exact).then_some(Sampling::Pixels);
     let mut random = fastrand::Rng::with_seed(index as u64);
     let ends: Vec<f64> = (0..400).map(|_| 1.4 * random.f64() - 0.2).collect();
     with_ends(&scene, along, |column, row| {
@@ -103,7 +110,7 @@ fn an_occluded_image_is_that_of_rays_cut_by_hand() {
     for along in WAYS {
         for (index, kind) in KINDS.iter().enumerate() {
             for is_square in [false, true] {
-                let scene = cut_scene(index, is_square, Method::Exact, along);
+                let scene = cut_scene(index, is_square, EXACT, along);
                 let image = renderer.render(&scene).unwrap();
                 let found = difference(&image, &cut_by_hand(&mut renderer, &scene));
                 println!("{kind:?} {along:?}, square: {is_square}: {found:?}");
@@ -118,9 +125,12 @@ fn an_occluded_image_is_that_of_rays_cut_by_hand() {
 
 #[test]
 fn so_is_its_simpson_sum() {
+    const SIMPSON: Method = Method::Simpson {
+        divisions: common::DIVISIONS,
+    };
     let mut renderer = renderer(common::device().lanes, "");
     for (index, kind) in KINDS.iter().enumerate() {
-        let scene = cut_scene(index, index % 2 == 0, Method::Simpson, WAYS[index % 2]);
+        let scene = cut_scene(index, index % 2 == 0, SIMPSON, WAYS[index % 2]);
         let image = renderer.render(&scene).unwrap();
         let expected = cut_by_hand(&mut renderer, &scene);
         let found = difference(&image, &expected);
@@ -142,7 +152,7 @@ fn so_is_its_simpson_sum() {
 fn depths_off_by_a_thousandth_fail_the_same_comparison() {
     let mut renderer = renderer(common::device().lanes, "");
     for (index, kind) in KINDS.iter().enumerate() {
-        let scene = cut_scene(index, true, Method::Exact, DepthAlong::Ray);
+        let scene = cut_scene(index, true, EXACT, DepthAlong::Ray);
         let expected = cut_by_hand(&mut renderer, &scene);
         let depth = scene.depth.as_ref().unwrap().as_slice();
         let mut off = scene.clone();
@@ -173,7 +183,7 @@ fn occluded(scene: &Scene, occluder: Occluder) -> Scene {
 /// A ring, a beam, a curve and a point behind all occluders.
 fn lit_scene() -> Scene {
     let mut scene = common::empty_scene(SIZE.width, SIZE.height);
-    scene.integration.method = Method::Exact;
+    scene.integration.method = Method::default();
     scene
         .tori
         .push(common::torus([0.0; 3], [0.1, 0.2, 1.0], 0.8));
@@ -198,10 +208,8 @@ fn edges_are_exact_to_the_pixel_by_pixels_and_by_tiles() {
         let scene = occluded(&lit_scene(), occluder);
         let expected = reference::render(&scene).unwrap();
         for tolerance in [1e-2, 1e-3, 1e-4] {
-            let mut scene = scene.clone();
-            scene.integration.tolerance = tolerance;
             for sampling in [Sampling::Pixels, Sampling::Tiles] {
-                scene.integration.sampling = Some(sampling);
+                let scene = sampled(&at_tolerance(&scene, tolerance), sampling);
                 let found = difference(&sharp.render(&scene).unwrap(), &expected);
                 assert!(
                     meets(&found, tolerance),
@@ -249,7 +257,7 @@ fn cores_at_the_eye_light_only_what_is_seen() {
     for profile in [Profile::Inverse, Profile::InverseSquare] {
         for index in 0..4 {
             let mut scene = common::empty_scene(25, 17);
-            scene.integration.method = Method::Exact;
+            scene.integration.method = Method::default();
             let eye = scene.camera.eye.to_array();
             match index {
                 0 => scene.spheres.push(common::sphere(eye, 1.0)),
@@ -283,14 +291,12 @@ fn every_lane_width_sees_the_same_surfaces() {
     let scene = occluded(&lit_scene(), ball);
     let expected = reference::render(&scene).unwrap();
     for lanes in lane_widths() {
-        for method in [Method::Simpson, Method::Exact] {
+        for method in [Method::simpson(64), Method::default()] {
             let mut scene = scene.clone();
             scene.integration.method = method;
-            scene.integration.divisions = 64;
-            let simpson = || reference::render_simpson(&scene).unwrap();
             let expected = match method {
-                Method::Simpson => &simpson(),
-                Method::Exact => &expected,
+                Method::Simpson { .. } => &simpson_reference(&scene),
+                _ => &expected,
             };
             let found = difference(&renderer(lanes, "").render(&scene).unwrap(), expected);
             assert!(meets(&found, 1e-3), "{lanes} lanes, {method:?}: {found:?}");
@@ -330,8 +336,7 @@ fn a_renderer_takes_depths_of_other_frames_and_sizes_for_none_of_its_own() {
 fn a_depth_beyond_the_rays_hides_nothing_and_one_before_them_everything() {
     let mut renderer = renderer(common::device().lanes, "");
     for sampling in [Sampling::Pixels, Sampling::Tiles] {
-        let mut scene = lit_scene();
-        scene.integration.sampling = Some(sampling);
+        let scene = sampled(&lit_scene(), sampling);
         let open = renderer.render(&scene).unwrap();
         for along in WAYS {
             let mut hidden = scene.clone();
@@ -340,7 +345,7 @@ fn a_depth_beyond_the_rays_hides_nothing_and_one_before_them_everything() {
             let found = difference(&renderer.render(&hidden).unwrap(), &open);
             let limit = match sampling {
                 Sampling::Pixels => CUT_BY_HAND,
-                Sampling::Tiles => scene.integration.tolerance,
+                _ => tolerance(&scene),
             };
             assert!(found.max <= limit, "{sampling:?} {along:?}: {found:?}");
             hidden.depth = Some(depths(&scene, along, |_, _| 0.9 * scene.camera.near));

@@ -1,11 +1,11 @@
 //! Whole images in linear radiance: the worst pixel against the float64 Simpson rule.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::{difference, empty_scene, full_scene, lane_widths, renderer};
+use crate::common;
+use crate::common::{
+    difference, empty_scene, full_scene, lane_widths, renderer, simpson_reference,
+};
+use energywave::Scene;
 use energywave::scene::{Measure, Method};
-use energywave::{Scene, reference};
 use glam::DVec3;
 
 /// Worst pixel of a device's Simpson image against float64: a sample that falls next to a core has a distance of few
@@ -55,10 +55,10 @@ fn every_image_matches_the_float64_simpson_rule_in_its_worst_pixel() {
     let mut renderer = renderer(common::device().lanes, "");
     for (name, scene) in scenes(61, 47)
         .into_iter()
-        .chain(common::figures(96, Method::Simpson))
+        .chain(common::figures(96, common::simpson_of))
     {
         let image = renderer.render(&scene).unwrap();
-        let found = difference(&image, &reference::render_simpson(&scene).unwrap());
+        let found = difference(&image, &simpson_reference(&scene));
         println!("{name}: {found:?}");
         assert!(found.max < WORST_PIXEL, "{name}: {found:?}");
         assert!(found.p999 < MOST_PIXELS, "{name}: {found:?}");
@@ -70,7 +70,7 @@ fn fields_spoiled_by_one_percent_fail_the_same_comparison() {
     let mut renderer = renderer(common::device().lanes, common::BROKEN_FIELDS);
     for (name, scene) in scenes(31, 23) {
         let image = renderer.render(&scene).unwrap();
-        let found = difference(&image, &reference::render_simpson(&scene).unwrap());
+        let found = difference(&image, &simpson_reference(&scene));
         assert!(
             found.max > WORST_PIXEL,
             "{name}: the spoiled build passed: {found:?}"
@@ -85,7 +85,7 @@ fn fields_spoiled_by_one_percent_fail_the_same_comparison() {
 #[test]
 fn one_wrong_pixel_fails_the_same_comparison() {
     let scene = full_scene(61, 47);
-    let expected = reference::render_simpson(&scene).unwrap();
+    let expected = simpson_reference(&scene);
     let mut image = renderer(common::device().lanes, "").render(&scene).unwrap();
     image.as_mut_slice()[4 * (7 * 61 + 60)] *= 1.001;
     let found = difference(&image, &expected);
@@ -136,7 +136,7 @@ fn the_intensity_at_the_nearest_point_does_not_hang_on_rounding() {
         let series = Some(vec![1.0, 5.0, 2.0, 8.0]);
         scene.curves.push(common::curve(points, series));
         let image = renderer.render(&scene).unwrap();
-        let found = difference(&image, &reference::render_simpson(&scene).unwrap());
+        let found = difference(&image, &simpson_reference(&scene));
         println!("{name}: {found:?}");
         assert!(found.max < WORST_PIXEL, "{name}: {found:?}");
     }
@@ -155,7 +155,7 @@ fn every_lane_width_gives_the_same_image() {
 #[test]
 fn the_portable_forms_give_the_same_image() {
     let scene = full_scene(53, 19);
-    let expected = reference::render_simpson(&scene).unwrap();
+    let expected = simpson_reference(&scene);
     for lanes in lane_widths() {
         let native = renderer(lanes, "").render(&scene).unwrap();
         for form in ["-DPORTABLE_ROOTS", "-DNO_SHUFFLES -DINLINE="] {
@@ -200,7 +200,7 @@ fn any_size_works_from_one_pixel_on() {
             let scene = full_scene(width, height);
             let image = renderer.render(&scene).unwrap();
             assert_eq!((image.size().width, image.size().height), (width, height));
-            let found = difference(&image, &reference::render_simpson(&scene).unwrap());
+            let found = difference(&image, &simpson_reference(&scene));
             assert!(
                 found.max < WORST_PIXEL,
                 "{lanes} lanes, {width}x{height}: {found:?}"
@@ -216,9 +216,9 @@ fn any_number_of_divisions_works() {
         let mut scene = full_scene(5, 3);
         // The middle ray must not pass through the origin, where two curves end: so many samples find the core there.
         scene.camera.target = DVec3::new(0.05, 0.02, 0.03);
-        scene.integration.divisions = divisions;
+        scene.integration.method = Method::simpson(divisions);
         let image = renderer.render(&scene).unwrap();
-        let found = difference(&image, &reference::render_simpson(&scene).unwrap());
+        let found = difference(&image, &simpson_reference(&scene));
         assert!(found.max < WORST_PIXEL, "{divisions}: {found:?}");
     }
 }
@@ -230,7 +230,7 @@ fn decay_measure_and_softening_are_the_references() {
     scene.decay = None;
     let mut check = |scene: &Scene, what: &str| {
         let image = renderer.render(scene).unwrap();
-        let found = difference(&image, &reference::render_simpson(scene).unwrap());
+        let found = difference(&image, &simpson_reference(scene));
         assert!(found.max < WORST_PIXEL, "{what}: {found:?}");
         image
     };
@@ -258,8 +258,8 @@ fn many_sources_in_many_launches_add_up() {
         let center = [0; 3].map(|_| 2.0 * random.f64() - 1.0);
         scene.spheres.push(common::sphere(center, 0.01));
     }
-    scene.integration.divisions = 1000; // 325 million samples: several launches on any device
+    scene.integration.method = Method::simpson(1000); // 325 million samples: several launches on any device
     let image = renderer.render(&scene).unwrap();
-    let found = difference(&image, &reference::render_simpson(&scene).unwrap());
+    let found = difference(&image, &simpson_reference(&scene));
     assert!(found.max < WORST_PIXEL, "{found:?}");
 }

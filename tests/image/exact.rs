@@ -1,10 +1,8 @@
 //! The method `exact`: closed forms and error-controlled quadrature against float64, at every tolerance.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::random::{Kind, random_scene, scene_of};
-use common::{difference, lane_widths, meets, renderer};
+use crate::common;
+use crate::common::random::{Kind, random_scene, scene_of};
+use crate::common::{at_tolerance, difference, lane_widths, meets, renderer};
 use energywave::image::Difference;
 use energywave::scene::Method;
 use energywave::verify::{Row, built_in_rays, verify};
@@ -66,8 +64,7 @@ fn missed(scenes: Vec<(String, Scene)>) -> Vec<String> {
     for tolerance in TOLERANCES {
         let mut all = Vec::new();
         for (name, scene, expected) in &scenes {
-            let mut scene = scene.clone();
-            scene.integration.tolerance = tolerance;
+            let scene = at_tolerance(scene, tolerance);
             let found = difference(&renderer.render(&scene).unwrap(), expected);
             if !meets(&found, tolerance) {
                 missed.push(format!("{name} at {tolerance:e}: {found:?}"));
@@ -81,7 +78,7 @@ fn missed(scenes: Vec<(String, Scene)>) -> Vec<String> {
 
 #[test]
 fn figures_and_random_scenes_meet_every_tolerance() {
-    let figures = common::figures(48, Method::Exact);
+    let figures = common::figures(48, common::exact_of);
     let missed = missed(figures.into_iter().chain(random_scenes()).collect());
     assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
@@ -101,8 +98,7 @@ fn without_cutting_unresolved_panels_tight_tolerances_are_missed() {
     let missed = with_references(random_scenes().split_off(30))
         .iter()
         .filter(|(_, scene, expected)| {
-            let mut scene = scene.clone();
-            scene.integration.tolerance = 1e-5;
+            let scene = at_tolerance(scene, 1e-5);
             !meets(
                 &difference(&renderer.render(&scene).unwrap(), expected),
                 1e-5,
@@ -149,8 +145,7 @@ fn through(renderer: &mut Renderer) -> Vec<Row> {
         renderer,
         "device",
         &built_in_rays().unwrap(),
-        Method::Exact,
-        1e-3,
+        Method::exact(1e-3),
     )
     .unwrap()
 }
@@ -202,8 +197,7 @@ fn every_lane_width_meets_the_tolerance() {
     let mut scene = common::full_scene(31, 17);
     // Among 527 pixels no one may miss: none looks at the origin, where two curves end.
     scene.camera.target = DVec3::new(0.05, 0.02, 0.03);
-    scene.integration.method = Method::Exact;
-    scene.integration.tolerance = 1e-4;
+    scene.integration.method = Method::exact(1e-4);
     let expected = reference::render(&scene).unwrap();
     for lanes in lane_widths() {
         let found = difference(&renderer(lanes, "").render(&scene).unwrap(), &expected);

@@ -1,17 +1,16 @@
 //! Nothing is written behind an image, whatever its size and the lane width.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{full_scene, lane_widths};
-use energywave::opencl::{Argument, DeviceBuffer, Program};
-use energywave::pack::{self, Rule, Sources, layout};
-use energywave::ray::ViewPlane;
-use energywave::scene::Integration;
+use crate::common;
+use crate::common::{full_scene, lane_widths};
+use energywave::internals::pack::{self, Anchor, Sources, layout};
+use energywave::internals::{
+    self, Argument, Compute, DeviceBuffer, FilmPart, KINDS, Rule, ViewPlane,
+};
 use half::f16;
 
 /// Renders straight into a buffer with 64 marked pixels behind the image, or with `-D HALVES` into one of half floats; how
 /// many marks are left. `kernel` is `render` or `tiles`.
+#[allow(unsafe_code)]
 fn marks_left(
     kernel: &str,
     lanes: u32,
@@ -26,30 +25,31 @@ fn marks_left(
     // What is stored does not depend on the kinds of source.
     let options = common::options(lanes, &format!("{method} {extra}"));
     let file = match kernel {
-        "tiles" => "wave/tiles/tiles.cl",
-        _ => "wave/render.cl",
+        "tiles" => "#include \"wave/tiles/tiles.cl\"\n",
+        _ => "#include \"wave/render.cl\"\n",
     };
-    let spheres = [true, false, false, false, false];
-    let program = Program::build(&compute, &[file], spheres, &options).unwrap();
+    let program = internals::build_text(&compute, kernel, file, &["sphere"], &options).unwrap();
     let plane = ViewPlane::new(&scene.camera, scene.image);
-    let packed = Sources::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
-    let nodes = pack::nodes(20, scene.decay);
-    let part = layout::FilmPart {
+    let anchor = Anchor::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
+    let packed = Sources::new(&scene, &anchor);
+    let node = |k| layout::Node {
+        s: k as f32 / 20.0,
+        weight: 0.05,
+    };
+    let nodes: Vec<_> = (0..=20).map(node).collect();
+    let part = FilmPart {
         count: width * height,
         width,
         is_last: 1,
         ..bytemuck::Zeroable::zeroed()
     };
-    let rule = Rule::of(&scene.integration, false);
+    let rule = Rule::of(1e-3, false);
     let integrand = pack::integrand(&scene, &rule, nodes.len() as u32);
     let launch = layout::Launch {
-        begin: [0; layout::KIND_COUNT],
-        end: [packed.spheres.len() as u32, 0, 0, 0, 0],
+        begin: [0; KINDS.len()],
+        end: packed.counts().map(|count| count as u32),
     };
-    fn upload<T: bytemuck::Pod>(
-        compute: &energywave::opencl::Compute,
-        values: &[T],
-    ) -> DeviceBuffer<T> {
+    fn upload<T: bytemuck::Pod>(compute: &Compute, values: &[T]) -> DeviceBuffer<T> {
         let mut buffer = DeviceBuffer::new(compute, "list", values.len()).unwrap();
         buffer.write(compute, values).unwrap();
         buffer
@@ -70,32 +70,45 @@ fn marks_left(
         pixel_step: 1e-3,
         ..bytemuck::Zeroable::zeroed()
     };
-    let lists: [&dyn Argument; 5] = [
-        &upload(&compute, &nodes),
-        &upload(&compute, &packed.spheres),
-        &upload(&compute, &packed.spline_pieces),
-        &upload(&compute, &[0_u32; 16]),
-        &upload(&compute, &vec![5.0_f32; pixels]),
-    ];
+    let (nodes, spheres) = (upload(&compute, &nodes), upload(&compute, &packed.spheres));
+    let (pieces, counts) = (
+        upload(&compute, &packed.spline_pieces),
+        upload(&compute, &[0_u32; 16]),
+    );
+    let depths = upload(&compute, &vec![5.0_f32; pixels]);
     let (places, light) = (
         upload(&compute, &[0_u32; 6]),
         upload(&compute, &[0.0_f32; 48]),
     );
-    let mut arguments: Vec<&dyn Argument> = vec![&view, &part, &integrand, &launch];
-    arguments.extend(lists);
-    arguments.push(&output);
+    let mut arguments: Vec<(&str, &dyn Argument)> = vec![
+        ("view", &view),
+        ("part", &part),
+        ("integrand", &integrand),
+        ("launch", &launch),
+        ("nodes", &nodes),
+        ("sphere_list", &spheres),
+        ("spline_pieces", &pieces),
+        ("counts", &counts),
+        ("depths", &depths),
+        ("pixels", &output),
+    ];
     if has_halves {
-        arguments.push(&halves);
+        arguments.push(("image", &halves));
     }
     // More work-items than there is work, as padded work-groups have.
     let items = match kernel {
         "tiles" => {
-            arguments.extend([&pass as &dyn Argument, &places, &light]);
+            arguments.extend([
+                ("pass", &pass as &dyn Argument),
+                ("open_tiles", &places),
+                ("open_light", &light),
+            ]);
             pass.tile_count as usize + 3
         }
         _ => pixels.div_ceil(lanes as usize) + 3,
     };
-    program.run(&compute, kernel, &arguments, items, 1).unwrap();
+    // SAFETY: behind the image there is memory for what kernels may write by mistake.
+    unsafe { internals::run(&compute, &program, kernel, &arguments, items, 1) }.unwrap();
     let mut read = vec![[0.0_f32; 4]; pixels + MARKS];
     if has_halves {
         let mut bits = vec![[0_u16; 4]; pixels + MARKS];
@@ -123,7 +136,7 @@ fn to_half(value: f32) -> u16 {
 
 #[test]
 fn nothing_is_written_behind_the_image() {
-    let exact = Rule::of(&Integration::default(), false).definitions();
+    let exact = Rule::of(1e-3, false).definitions();
     let tiles = format!("{exact} -D PER_RAY= -D MOST_WORDS=4 -D TILE_WORKERS=1");
     for lanes in lane_widths() {
         for (kernel, method) in [("render", ""), ("render", &exact), ("tiles", &tiles)] {

@@ -1,29 +1,16 @@
 //! Tiles: the tolerance is met where interpolation is hardest, each pixel comes once, and the cost follows the wave's
 //! outline.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::random::random_scene;
-use common::tile_scenes::{hard_scenes, usual_view};
-use common::{difference, lane_widths, meets, renderer};
-use energywave::scene::{ImageSize, Method, Sampling};
+use crate::common;
+use crate::common::random::random_scene;
+use crate::common::tile_scenes::{hard_scenes, usual_view};
+use crate::common::{at_tolerance, difference, lane_widths, meets, renderer, sampled};
+use energywave::image::ImageSize;
+use energywave::scene::{Method, Sampling};
 use energywave::{Renderer, Scene, reference};
 use glam::DVec3;
 
 const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
-
-fn at_tolerance(scene: &Scene, tolerance: f64) -> Scene {
-    let mut scene = scene.clone();
-    scene.integration.tolerance = tolerance;
-    scene
-}
-
-fn sampled(scene: &Scene, sampling: Sampling) -> Scene {
-    let mut scene = scene.clone();
-    scene.integration.sampling = Some(sampling);
-    scene
-}
 
 /// Accepts every interpolation that seems smooth at the nodes.
 const UNTESTED: &str = "-DLEAST_CLEARANCE=0.0f -DMOST_SPREAD=1e9f -DMOST_ERROR(pass)=1e9f";
@@ -85,11 +72,11 @@ fn sources_of_opposite_signs_are_taken_at_every_pixel() {
     assert_eq!(scene.sampling(), Sampling::Tiles);
     let all = 2 * scene.image.pixels() as u64;
     renderer.render(&scene).unwrap();
-    assert!(renderer.last_cost().evaluations < all / 2);
+    assert!(renderer.last_cost().integrals < all / 2);
     scene.spheres[1].coefficient = -0.9;
     assert_eq!(scene.sampling(), Sampling::Pixels);
     renderer.render(&scene).unwrap();
-    assert_eq!(renderer.last_cost().evaluations, all);
+    assert_eq!(renderer.last_cost().integrals, all);
     // Light that is negative everywhere cancels nothing.
     scene.spheres[0].coefficient = -1.0;
     assert_eq!(scene.sampling(), Sampling::Tiles);
@@ -98,8 +85,7 @@ fn sources_of_opposite_signs_are_taken_at_every_pixel() {
 #[test]
 fn every_lane_width_paints_the_same_image() {
     let mut scene = common::full_scene(75, 37);
-    scene.integration.method = Method::Exact;
-    scene.integration.tolerance = 1e-4;
+    scene.integration.method = Method::exact(1e-4);
     scene.camera.target = DVec3::new(0.05, 0.02, 0.03);
     let expected = reference::render(&scene).unwrap();
     for lanes in lane_widths() {
@@ -181,25 +167,25 @@ fn more_sources_than_a_launch_takes_are_all_in_the_image() {
 }
 
 /// Integrals of a frame.
-fn evaluations(renderer: &mut Renderer, scene: &Scene, width: u32, height: u32) -> u64 {
+fn integrals(renderer: &mut Renderer, scene: &Scene, width: u32, height: u32) -> u64 {
     let mut scene = scene.clone();
     scene.image = ImageSize { width, height };
     scene.depth = scene
         .depth
         .map(|depth| common::resized(&depth, scene.image));
     renderer.render(&scene).unwrap();
-    renderer.last_cost().evaluations
+    renderer.last_cost().integrals
 }
 
 #[test]
 fn integrals_grow_with_the_outline_and_not_with_the_pixels() {
     let mut renderer = renderer(common::device().lanes, "");
-    for (name, scene) in common::figures(48, Method::Exact) {
+    for (name, scene) in common::figures(48, common::exact_of) {
         // A level line costs more or less as it lies in the rows of tiles: several heights are summed.
         let mut of_width = |width: u32| -> u64 {
             let heights = [540, 545, 550].map(|height| height * width / 960);
             heights
-                .map(|height| evaluations(&mut renderer, &scene, width, height))
+                .map(|height| integrals(&mut renderer, &scene, width, height))
                 .iter()
                 .sum()
         };
@@ -210,7 +196,7 @@ fn integrals_grow_with_the_outline_and_not_with_the_pixels() {
         assert!(10 * large < all, "{name}: {large} of {all}");
         let pixels = sampled(&scene, Sampling::Pixels);
         assert_eq!(
-            evaluations(&mut renderer, &pixels, 96, 54),
+            integrals(&mut renderer, &pixels, 96, 54),
             96 * 54 * scene.source_count() as u64
         );
     }
@@ -225,7 +211,7 @@ fn a_source_costs_as_much_among_many_as_alone() {
     };
     let per_source = |renderer: &mut Renderer, count| {
         let scene = many_spheres(count, image);
-        evaluations(renderer, &scene, 256, 256) as f64 / f64::from(count)
+        integrals(renderer, &scene, 256, 256) as f64 / f64::from(count)
     };
     let (few, many) = (
         per_source(&mut renderer, 16),

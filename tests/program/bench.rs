@@ -1,13 +1,11 @@
 //! The speed tables' frames are images like any other, and `energywave bench` says what it measured.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
+use crate::common;
 use std::process::Command;
 use std::time::Duration;
 
-use energywave::bench::{DIVISIONS, RESOLUTIONS, TABLE_2010, Table, measure, turned};
 use energywave::image::compare;
+use energywave::papers::{DIVISIONS, RESOLUTIONS, TABLE_2010, Table, measure, turned};
 use energywave::{Device, RadianceImage, Renderer, reference};
 use serde_json::Value;
 
@@ -22,7 +20,7 @@ fn every_cells_frames_match_the_float64_simpson_rule() {
             for frame in [0, 7, 40] {
                 let scene = turned(&table.scene(resolution, divisions), frame);
                 let image = renderer.render(&scene).unwrap();
-                let found = common::difference(&image, &reference::render_simpson(&scene).unwrap());
+                let found = common::difference(&image, &common::simpson_reference(&scene));
                 assert!(
                     found.max < WORST_PIXEL,
                     "{table:?} {resolution} {divisions}: {found:?}"
@@ -45,8 +43,8 @@ fn the_measured_frame_is_the_one_it_names() {
         speed.image,
         renderer.render(&turned(&scene, speed.frame + 1)).unwrap()
     );
-    assert_eq!(speed.cost.evaluations, 64 * 64);
-    assert_eq!(speed.cost.field_evaluations, 64 * 64 * 21);
+    assert_eq!(speed.cost.integrals, 64 * 64);
+    assert_eq!(speed.cost.samples, 64 * 64 * 21);
     assert!(speed.kernel > Duration::ZERO && speed.kernel.as_secs_f64() < 1.5 / speed.fps);
 }
 
@@ -68,7 +66,7 @@ fn mapped_read_and_returned_images_are_the_same() {
 #[test]
 fn rows_go_where_the_caller_wants_them_and_nothing_between_is_touched() {
     let scene = common::full_scene(37, 11);
-    let reference = Device::select("reference").unwrap();
+    let reference = Device::reference();
     let renderers = [
         common::renderer(common::device().lanes, ""),
         Renderer::new(&reference).unwrap(),
@@ -78,7 +76,7 @@ fn rows_go_where_the_caller_wants_them_and_nothing_between_is_touched() {
         for stride in [4 * 37, 4 * 37 + 1, 4 * 64] {
             let mut target = vec![-7.0; 11 * stride + 5];
             renderer
-                .render_into_rows(&scene, &mut target, stride)
+                .render_rows(&scene, 0..11, &mut target, stride)
                 .unwrap();
             let rows = image.as_slice().chunks(4 * 37);
             for (found, expected) in target.chunks(stride).zip(rows) {
@@ -90,10 +88,10 @@ fn rows_go_where_the_caller_wants_them_and_nothing_between_is_touched() {
             let least = 10 * stride + 4 * 37;
             assert!(
                 renderer
-                    .render_into_rows(&scene, &mut target[..least], stride)
+                    .render_rows(&scene, 0..11, &mut target[..least], stride)
                     .is_ok()
             );
-            let short = renderer.render_into_rows(&scene, &mut target[..least - 1], stride);
+            let short = renderer.render_rows(&scene, 0..11, &mut target[..least - 1], stride);
             let message = short.unwrap_err().to_string();
             assert!(
                 message.contains(&format!("and {least} in all")),
@@ -102,7 +100,7 @@ fn rows_go_where_the_caller_wants_them_and_nothing_between_is_touched() {
         }
         assert!(
             renderer
-                .render_into_rows(&scene, &mut [0.0; 4096], 4 * 36)
+                .render_rows(&scene, 0..11, &mut [0.0; 4096], 4 * 36)
                 .is_err()
         );
     }
@@ -154,7 +152,7 @@ fn a_table_has_nine_cells_with_their_frames() {
     let scene = Table::Torus.scene(128, 128);
     let scene = turned(&scene, cell["frame"].as_u64().unwrap() as u32);
     let frame = RadianceImage::open(folder.path().join("frames/torus-128-128.exr")).unwrap();
-    let found = compare(&frame, &reference::render_simpson(&scene).unwrap()).unwrap();
+    let found = compare(&frame, &common::simpson_reference(&scene)).unwrap();
     assert!(found.max < WORST_PIXEL, "{found:?}");
 }
 

@@ -1,13 +1,10 @@
 //! Ten thousand frames, and renderers made and dropped, leave as many OpenCL objects and as much memory as there were.
-#![allow(clippy::unwrap_used)]
-#![cfg(target_os = "linux")] // the OpenCL layer is a shared library; resident memory is read from /proc
 
-mod common;
-
+use crate::common;
 use std::hint::black_box;
 use std::ops::Range;
 
-use common::layer::Layer;
+use crate::common::layer::{Layer, with_layer};
 use energywave::image::{DepthAlong, DepthImage};
 use energywave::scene::{Method, Sampling};
 use energywave::{Renderer, Scene};
@@ -27,10 +24,10 @@ fn resident() -> i64 {
 /// A frame of a film in which everything changes: by tiles, by pixels and by Simpson's rule, with and without depths.
 fn frame(index: u32, depths: &DepthImage) -> Scene {
     let mut scene = common::empty_scene(16, 16);
-    (scene.integration.method, scene.integration.sampling) = match index % 3 {
-        0 => (Method::Exact, Some(Sampling::Tiles)),
-        1 => (Method::Exact, Some(Sampling::Pixels)),
-        _ => (Method::Simpson, None),
+    scene.integration.method = match index % 3 {
+        0 => common::by(Sampling::Tiles),
+        1 => common::by(Sampling::Pixels),
+        _ => Method::simpson(common::DIVISIONS),
     };
     let shift = 0.5 * f64::from(index).sin();
     scene.camera.eye.x += shift;
@@ -70,55 +67,61 @@ fn draw(renderer: &mut Renderer, frames: Range<u32>) {
 
 #[test]
 fn ten_thousand_frames_leave_no_object_and_no_memory() {
-    let layer = Layer::new();
-    let before = layer.live();
-    let mut renderer = Renderer::new(&common::device()).unwrap();
-    draw(&mut renderer, 0..1000);
-    let (live, memory) = (layer.live(), resident());
-    for thousand in 1..11 {
-        draw(&mut renderer, 1000 * thousand..1000 * (thousand + 1));
-        assert_eq!(layer.live(), live, "after {thousand} thousand frames");
-    }
-    let grown = resident() - memory;
-    assert!(grown < FRAMES_KIB, "{grown} KiB more");
-    assert_eq!(live.events, 0);
-    drop(renderer);
-    assert_eq!(layer.live(), before);
+    with_layer(|| {
+        let layer = Layer::new();
+        let before = layer.live();
+        let mut renderer = Renderer::new(&common::device()).unwrap();
+        draw(&mut renderer, 0..1000);
+        let (live, memory) = (layer.live(), resident());
+        for thousand in 1..11 {
+            draw(&mut renderer, 1000 * thousand..1000 * (thousand + 1));
+            assert_eq!(layer.live(), live, "after {thousand} thousand frames");
+        }
+        let grown = resident() - memory;
+        assert!(grown < FRAMES_KIB, "{grown} KiB more");
+        assert_eq!(live.events, 0);
+        drop(renderer);
+        assert_eq!(layer.live(), before);
+    });
 }
 
 #[test]
 fn thirty_renderers_leave_no_object_and_little_memory() {
-    let layer = Layer::new();
-    let device = common::device();
-    let before = layer.live();
-    let mut memory = Vec::new();
-    for _ in 0..40 {
-        let mut renderer = Renderer::new(&device).unwrap();
-        draw(&mut renderer, 0..2);
-        drop(renderer);
-        assert_eq!(layer.live(), before);
-        memory.push(resident());
-    }
-    let grown = memory[39] - memory[9];
-    assert!(grown < RENDERERS_KIB, "{grown} KiB more: {memory:?}");
+    with_layer(|| {
+        let layer = Layer::new();
+        let device = common::device();
+        let before = layer.live();
+        let mut memory = Vec::new();
+        for _ in 0..40 {
+            let mut renderer = Renderer::new(&device).unwrap();
+            draw(&mut renderer, 0..2);
+            drop(renderer);
+            assert_eq!(layer.live(), before);
+            memory.push(resident());
+        }
+        let grown = memory[39] - memory[9];
+        assert!(grown < RENDERERS_KIB, "{grown} KiB more: {memory:?}");
+    });
 }
 
 #[test]
 fn what_is_left_behind_is_seen() {
-    let layer = Layer::new();
-    let before = layer.live();
-    let mut renderer = Renderer::new(&common::device()).unwrap();
-    draw(&mut renderer, 0..1);
-    std::mem::forget(renderer);
-    let live = layer.live();
-    assert_eq!(
-        (live.contexts, live.queues),
-        (before.contexts + 1, before.queues + 1)
-    );
-    assert!(live.buffers > before.buffers && live.kernels > before.kernels);
+    with_layer(|| {
+        let layer = Layer::new();
+        let before = layer.live();
+        let mut renderer = Renderer::new(&common::device()).unwrap();
+        draw(&mut renderer, 0..1);
+        std::mem::forget(renderer);
+        let live = layer.live();
+        assert_eq!(
+            (live.contexts, live.queues),
+            (before.contexts + 1, before.queues + 1)
+        );
+        assert!(live.buffers > before.buffers && live.kernels > before.kernels);
 
-    let memory = resident();
-    let kept = black_box(vec![1_u8; 64 << 20]); // more than an allocator reuses
-    let grown = resident() - memory;
-    assert!(grown >= 60 << 10, "{grown} KiB of {} bytes", kept.len());
+        let memory = resident();
+        let kept = black_box(vec![1_u8; 64 << 20]); // more than an allocator reuses
+        let grown = resident() - memory;
+        assert!(grown >= 60 << 10, "{grown} KiB of {} bytes", kept.len());
+    });
 }

@@ -1,5 +1,4 @@
 //! Every bad scene: exit code 3, one message with file, line, column and key, and nothing written.
-#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 use std::process::Command;

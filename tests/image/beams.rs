@@ -1,10 +1,8 @@
 //! Beams beside what they are made of: lines and points, whole where the plane through the tip is never crossed.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{difference, renderer};
-use energywave::scene::{Beam, Cylinder, Method, Profile, Sampling, Sphere};
+use crate::common;
+use crate::common::{difference, renderer};
+use energywave::scene::{Beam, BeamEnd, Cylinder, Method, Profile, Sampling, Sphere};
 use energywave::{RadianceImage, Renderer, Scene};
 use glam::DVec3;
 
@@ -18,7 +16,6 @@ fn view(method: Method) -> Scene {
     let mut scene = common::empty_scene(33, 21);
     scene.integration.method = method;
     scene.camera.ray_length = Some(6.0);
-    scene.integration.sampling = Some(Sampling::Pixels); // tiles differ within the tolerance
     scene
 }
 
@@ -32,11 +29,18 @@ fn image(renderer: &mut Renderer, method: Method, add: impl Fn(&mut Scene)) -> R
     renderer.render(&scene).unwrap()
 }
 
+/// At every pixel: tiles differ within the tolerance.
+fn exact() -> Method {
+    common::by(Sampling::Pixels)
+}
+
 /// Every combination of method and profile.
 fn ways() -> impl Iterator<Item = (Method, Profile)> {
     let profiles = [Profile::Inverse, Profile::InverseSquare];
     let with = move |method| profiles.map(|profile| (method, profile));
-    [Method::Simpson, Method::Exact].into_iter().flat_map(with)
+    [Method::simpson(common::DIVISIONS), exact()]
+        .into_iter()
+        .flat_map(with)
 }
 
 #[test]
@@ -48,7 +52,7 @@ fn rays_that_never_cross_the_plane_see_a_line_or_a_point() {
                 scene.beams.push(Beam {
                     tip: direction() * along,
                     coefficient: 2.0,
-                    cap_coefficient: Some(500.0),
+                    end: BeamEnd::Cap(Some(500.0)),
                     profile,
                     ..Beam::new(3.0 * direction())
                 });
@@ -91,7 +95,7 @@ fn parts_add_up() {
         };
         let mut draw = |beams: &[Beam], sphere: f64| {
             image(&mut renderer, method, |scene| {
-                scene.beams = beams.to_vec();
+                scene.beams = beams.to_vec().into();
                 scene.spheres.push(Sphere {
                     center: plain.tip,
                     coefficient: sphere,
@@ -102,7 +106,7 @@ fn parts_add_up() {
         };
         let part = |line: f64, cap: f64, sphere: f64| Beam {
             coefficient: line,
-            cap_coefficient: Some(cap),
+            end: BeamEnd::Cap(Some(cap)),
             sphere_coefficient: sphere,
             ..plain.clone()
         };
@@ -131,10 +135,9 @@ fn a_taper_is_between_a_line_and_a_cut() {
     let mut renderer = renderer(common::device().lanes, "");
     for profile in [Profile::Inverse, Profile::InverseSquare] {
         let mut draw = |taper_length: Option<f64>| {
-            image(&mut renderer, Method::Exact, |scene| {
+            image(&mut renderer, exact(), |scene| {
                 scene.beams.push(Beam {
-                    taper_length,
-                    cap_coefficient: taper_length.is_none().then_some(0.0),
+                    end: taper_length.map_or(BeamEnd::Cap(Some(0.0)), BeamEnd::Taper),
                     profile,
                     ..Beam::new(direction())
                 });
@@ -151,7 +154,7 @@ fn a_taper_is_between_a_line_and_a_cut() {
             let mut values = pair[0].as_slice().iter().zip(pair[1].as_slice());
             assert!(values.all(|(less, more)| *less <= more * 1.000_001));
         }
-        let line = image(&mut renderer, Method::Exact, |scene| {
+        let line = image(&mut renderer, exact(), |scene| {
             scene.cylinders.push(Cylinder {
                 profile,
                 ..Cylinder::new(direction())

@@ -1,12 +1,9 @@
 //! What the program says and does where OpenCL is missing, broken, or ambiguous.
-#![allow(clippy::unwrap_used)]
-#![cfg(unix)] // the loader's environment variables
 
-mod common;
-
+use crate::common;
 use std::path::PathBuf;
 
-use common::program::{Folder, SCENE, device, expect, stderr};
+use crate::common::program::{Folder, SCENE, device, expect, stderr};
 use serde_json::Value;
 
 /// A folder with a file `libOpenCL.so.1` that is no library: the loader is there and cannot be loaded.
@@ -112,7 +109,7 @@ fn a_failing_kernel_build_exits_with_5_and_names_file_and_line() {
     };
     let lanes = build("-DLANES=3");
     expect(&lanes, 5, "LANES must be 1, 4, 8 or 16");
-    let line = 1 + include_str!("../cl/lanes.h")
+    let line = 1 + include_str!("../../cl/lanes.h")
         .lines()
         .position(|l| l.contains("#error"))
         .unwrap();

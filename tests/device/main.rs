@@ -1,0 +1,12 @@
+//! Single parts of the kernels, and devices that share a frame.
+#![allow(clippy::unwrap_used, clippy::panic)] // tests fail by panicking
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod canaries; // looks for what is written behind an image
+mod device_functions; // compares device functions, one at a time, with float64
+mod film; // lets a second engine add its light to the wave's
+mod layout; // finds every field of every device struct by its name
+mod sanitizer; // runs every kernel on every lane width, small enough for a simulator
+mod several_devices; // draws one frame on several devices

@@ -1,0 +1,8 @@
+//! Frames in a host's own OpenCL.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
+
+#[path = "../common/mod.rs"]
+mod common;
+
+#[allow(clippy::module_inception)] // the module says what it tests, as in the other programs
+mod host; // draws into a host's buffers and images, on its queue, after its events

@@ -1,0 +1,15 @@
+//! Whole images, and what makes them, against float64.
+#![allow(clippy::unwrap_used, clippy::panic)] // tests fail by panicking
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod beams; // compares beams with the lines and points that they are made of
+mod depth; // compares occluded images with those of rays that are cut by hand
+mod exact; // holds the method `exact` to every tolerance
+mod hard_scenes; // takes the method `exact` through cores, along them, and to extreme numbers
+mod images; // bounds the worst pixel of the Simpson rule
+mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
+mod parts; // draws rows, rays and changed scenes as the whole image has them
+mod rays; // compares single rays with integrals that are known to nine digits
+mod tiles; // holds interpolation by tiles to the tolerance, and counts what it costs

@@ -1,0 +1,13 @@
+//! What users run and read: the program, its scene files, the examples.
+#![allow(clippy::unwrap_used, clippy::panic)] // tests fail by panicking
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bad_scenes; // has every fault of a scene file named with its place
+mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
+#[cfg(unix)] // shells, signals and the loader's environment variables
+mod cli; // runs the program: exit codes, messages and outputs
+mod errors; // tells errors apart by their codes, and refuses wrong options
+mod examples; // runs every example
+mod scene_files; // reads again what was written
