@@ -8,70 +8,40 @@ use super::{Argument, Compute, DeviceBuffer};
 use crate::error::Result;
 
 /// A list of numbers on the device, set to 0 before kernels run and read back after them, both without waiting.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Counters<const LEN: usize> {
     buffer: Option<DeviceBuffer<u32>>,
-    /// Where the copy under way goes to.
-    values: Box<[u32; LEN]>,
-    under_way: Option<Handle<Event>>,
-    /// Resets: kernels that count on from old numbers draw a wrong image.
-    resetting: Vec<Handle<Event>>,
 }
 
-impl<const LEN: usize> Default for Counters<LEN> {
-    fn default() -> Self {
-        Self {
-            buffer: None,
-            values: Box::new([0; LEN]),
-            under_way: None,
-            resetting: Vec::new(),
-        }
-    }
+/// Numbers that are on their way to the host.
+#[derive(Debug)]
+pub struct Counted<const LEN: usize> {
+    values: Box<[u32; LEN]>,
+    event: Handle<Event>,
 }
 
 impl<const LEN: usize> Counters<LEN> {
-    /// Sets all numbers to 0 before the next command of the queue begins.
-    pub(crate) fn reset(&mut self, compute: &Compute) -> Result<()> {
-        self.wait_for_numbers(compute)?;
+    /// Sets all numbers to 0 before the next command of the queue begins. Kernels that count on from old numbers draw a
+    /// wrong image: whether the event of that went well must be asked for.
+    pub(crate) fn reset(&mut self, compute: &Compute) -> Result<Handle<Event>> {
         let buffer = match self.buffer.take() {
             Some(buffer) => buffer,
             None => DeviceBuffer::new(compute, "the counts", LEN)?,
         };
         let zeros: &'static [u32; LEN] = const { &[0; LEN] };
         // SAFETY: constants stay.
-        let event = unsafe { self.buffer.insert(buffer).begin_write(compute, zeros) }?;
-        self.resetting.push(event);
-        Ok(())
+        unsafe { self.buffer.insert(buffer).begin_write(compute, zeros) }
     }
 
-    /// Reads the numbers after all earlier commands of the queue.
-    pub(crate) fn fetch(&mut self, compute: &Compute) -> Result<()> {
-        self.wait_for_numbers(compute)?;
-        if let Some(buffer) = &self.buffer {
-            // SAFETY: `values` has room for the buffer's numbers; it is neither read nor freed before the event is over.
-            let event = unsafe { buffer.begin_read(compute, self.values.as_mut_slice()) }?;
-            self.under_way = Some(event);
-        }
-        Ok(())
-    }
-
-    /// Waits for what is under way: the numbers last fetched.
-    pub(crate) fn settle(&mut self, compute: &Compute) -> Result<&[u32; LEN]> {
-        self.wait_for_numbers(compute)?;
-        let mut outcome = Ok(());
-        for event in self.resetting.drain(..) {
-            outcome = outcome.and(wait(compute, Some(event), "clEnqueueWriteBuffer"));
-        }
-        outcome.map(|()| &*self.values)
-    }
-
-    /// The resets since then, for who does not wait.
-    pub(crate) fn take_resets(&mut self) -> Vec<Handle<Event>> {
-        std::mem::take(&mut self.resetting)
-    }
-
-    fn wait_for_numbers(&mut self, compute: &Compute) -> Result<()> {
-        wait(compute, self.under_way.take(), "clEnqueueReadBuffer")
+    /// Reads the numbers after all earlier commands of the queue; `None` if there are none.
+    pub(crate) fn fetch(&self, compute: &Compute) -> Result<Option<Counted<LEN>>> {
+        let Some(buffer) = &self.buffer else {
+            return Ok(None);
+        };
+        let mut values = Box::new([0; LEN]);
+        // SAFETY: `Counted` neither reads nor frees the numbers before the event is over.
+        let event = unsafe { buffer.begin_read(compute, values.as_mut_slice()) }?;
+        Ok(Some(Counted { values, event }))
     }
 
     /// The list, for kernels.
@@ -80,18 +50,22 @@ impl<const LEN: usize> Counters<LEN> {
     }
 }
 
-fn wait(compute: &Compute, event: Option<Handle<Event>>, call: &'static str) -> Result<()> {
-    match event {
-        Some(event) => event.wait().map_err(failed(&compute.device().name, call)),
-        None => Ok(()),
+impl<const LEN: usize> Counted<LEN> {
+    /// Waits for the numbers.
+    pub(crate) fn wait(&self, compute: &Compute) -> Result<[u32; LEN]> {
+        wait(compute, &self.event, "clEnqueueReadBuffer")?;
+        Ok(*self.values)
     }
 }
 
-impl<const LEN: usize> Drop for Counters<LEN> {
+impl<const LEN: usize> Drop for Counted<LEN> {
     fn drop(&mut self) {
-        if let Some(event) = self.under_way.take() {
-            // The copy writes to `values`: it must be over before they are freed, however it ended.
-            let _ = event.wait();
-        }
+        // The copy writes to `values`: it must be over before they are freed, however it ended.
+        let _ = self.event.wait();
     }
+}
+
+/// Waits for a copy.
+pub(crate) fn wait(compute: &Compute, event: &Event, call: &'static str) -> Result<()> {
+    event.wait().map_err(failed(&compute.device().name, call))
 }

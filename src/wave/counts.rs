@@ -1,7 +1,7 @@
 //! What the wave's kernels count while they work.
 
 use super::tiles;
-use crate::opencl::Counters;
+use crate::opencl::{Counted, Counters};
 
 /// Tiles: integrals, pairs of a ray and a source.
 pub(super) const INTEGRALS: usize = 0;
@@ -10,8 +10,11 @@ pub(super) const NODES: usize = 1;
 /// Tiles that a pass left open; a number for each pass.
 const OPEN_TILES: usize = NODES + 1;
 
-/// All of them.
-pub(super) type Counts = Counters<{ OPEN_TILES + tiles::MOST_PASSES }>;
+const LEN: usize = OPEN_TILES + tiles::MOST_PASSES;
+
+/// All of them, on the device and on their way back.
+pub(super) type Counts = Counters<LEN>;
+pub(super) type CountedNumbers = Counted<LEN>;
 
 /// The numbers' places, for the kernels' compiler.
 pub(super) fn definitions() -> String {

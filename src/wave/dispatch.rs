@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use opencl3::event::Event;
 
+use super::counts::CountedNumbers;
 use super::kernels::{Rays, Variant};
 use super::partition::Part;
 use super::plan::Plan;
@@ -12,13 +13,19 @@ use super::tiles::{self, OpenTiles};
 use super::{Wave, counts};
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
-use crate::opencl::{Argument, Compute, DeviceType, Film, Handle, run_time, state};
+use crate::opencl::{Argument, Compute, DeviceType, Film, Handle, run_time, state, wait};
+
+/// Launches that are enqueued at once: while the host sees to the next one, the device works on another.
+const MOST_UNDER_WAY: usize = 2;
 
 /// A launch under way.
 #[derive(Debug)]
 pub(super) struct Launched {
     /// Of each pass.
     events: Vec<Handle<Event>>,
+    /// What was set to 0 before, and what was counted.
+    reset: Option<Handle<Event>>,
+    counted: Option<CountedNumbers>,
     /// If every pixel takes every source.
     integrals: u64,
     /// Samples of fields, or an estimate.
@@ -33,7 +40,7 @@ impl Wave {
     pub(crate) fn begin(&mut self, compute: &Compute, plan: &Plan, pixels: usize) -> Result<()> {
         self.pace.begin(&plan.counts);
         self.cost = FrameCost::default();
-        self.under_way = None;
+        self.under_way.clear();
         let largest = Part {
             pixels: 0..plan.work.most_pixels().min(pixels as u32),
             sources: 0..plan.work.source_count.min(plan.work.most_sources),
@@ -41,8 +48,8 @@ impl Wave {
         self.open_tiles.reserve(compute, &plan.passes(&largest))
     }
 
-    /// Draws all sources on a band of pixels, one launch at a time: the pace of the next depends on it, and the queue stays
-    /// short. The last one may still be under way: [`Wave::settle`] waits for it.
+    /// Draws all sources on a band of pixels, at most [`MOST_UNDER_WAY`] launches at a time: the pace of the next depends on
+    /// those before, and the queue stays short. The last ones may still be under way: [`Wave::settle`] waits for them.
     ///
     /// # Errors
     /// [`Error::Interrupted`] if `progress`, which hears the number of the next pixel, says so; [`Error::Device`].
@@ -59,9 +66,10 @@ impl Wave {
             let pixels = pixel..pixel + self.pace.pixels(&plan.work, band.end - pixel);
             let mut source = 0;
             loop {
-                self.settle(compute, plan)?;
+                self.settle_down_to(MOST_UNDER_WAY - 1, compute, plan)?;
                 let part = self.pace.part(&plan.work, &pixels, source);
-                self.under_way = Some(self.launch(compute, plan, &part, film, true)?);
+                let launched = self.launch(compute, plan, &part, film, true)?;
+                self.under_way.push_back(launched);
                 source = part.sources.end;
                 if source >= plan.work.source_count {
                     break;
@@ -96,7 +104,8 @@ impl Wave {
             let mut source = 0;
             loop {
                 let part = self.pace.part(&plan.work, &next, source);
-                let launched = self.launch(compute, plan, &part, film, false)?;
+                let mut launched = self.launch(compute, plan, &part, film, false)?;
+                self.held.extend(launched.reset.take());
                 self.cost.launches += launched.events.len() as u32;
                 self.unwatched.push(launched);
                 source = part.sources.end;
@@ -135,9 +144,11 @@ impl Wave {
     ) -> Result<Launched> {
         let passes = plan.passes(part);
         self.open_tiles.reserve(compute, &passes)?;
-        if self.counts_in(plan) {
-            self.counts.reset(compute)?;
-        }
+        let counts = self.counts_in(plan);
+        let reset = match counts {
+            true => Some(self.counts.reset(compute)?),
+            false => None,
+        };
         let (is_first, is_last) = plan.place_of(part);
         let film = film.arguments(compute, &part.pixels, plan.size, is_first, is_last)?;
         let launch = plan.launch(part);
@@ -182,13 +193,14 @@ impl Wave {
                 passes.iter().map(tiles).collect::<Result<_>>()?
             }
         };
-        match is_watched {
-            true if self.counts_in(plan) => self.counts.fetch(compute)?,
-            true => {}
-            false => self.held.extend(self.counts.take_resets()),
-        }
+        let counted = match is_watched && counts {
+            true => self.counts.fetch(compute)?,
+            false => None,
+        };
         Ok(Launched {
             events,
+            reset,
+            counted,
             integrals: part.pixels.len() as u64 * (part.sources.end - part.sources.start),
             samples: part.samples(&plan.work),
         })
@@ -199,23 +211,40 @@ impl Wave {
         plan.task.rays == Rays::Tiles || self.options.counts_samples
     }
 
-    /// Waits for the launch under way, if there is one, and learns from it.
+    /// Waits for the launches under way and learns from them.
     ///
     /// # Errors
-    /// [`Error::Device`] if it failed.
+    /// [`Error::Device`] if one failed.
     pub(crate) fn settle(&mut self, compute: &Compute, plan: &Plan) -> Result<()> {
-        let Some(launched) = self.under_way.take() else {
-            return Ok(());
-        };
+        self.settle_down_to(0, compute, plan)
+    }
+
+    /// Waits until no more than so many launches are under way.
+    fn settle_down_to(&mut self, most: usize, compute: &Compute, plan: &Plan) -> Result<()> {
+        while self.under_way.len() > most {
+            if let Some(launched) = self.under_way.pop_front() {
+                self.settle_one(compute, plan, &launched)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn settle_one(&mut self, compute: &Compute, plan: &Plan, launched: &Launched) -> Result<()> {
         let mut time = Duration::ZERO;
         for event in &launched.events {
             time += run_time(compute, event)?;
         }
         self.pace.measured(launched.samples, time);
+        if let Some(reset) = &launched.reset {
+            wait(compute, reset, "clEnqueueWriteBuffer")?;
+        }
+        let counted = match &launched.counted {
+            Some(counted) => counted.wait(compute)?,
+            None => Default::default(),
+        };
         let cost = &mut self.cost;
         cost.kernel += time;
         cost.launches += launched.events.len() as u32;
-        let counted = self.counts.settle(compute)?;
         cost.integrals += match plan.task.rays {
             Rays::Tiles => u64::from(counted[counts::INTEGRALS]),
             Rays::Pixels | Rays::Listed => launched.integrals,

@@ -14,6 +14,7 @@ mod self_test;
 mod simpson;
 mod tiles;
 
+use std::collections::VecDeque;
 use std::ops::Range;
 
 use opencl3::event::Event;
@@ -52,8 +53,8 @@ pub struct Wave {
     depths: UploadedShared<f32>,
     pace: Pace,
     cost: FrameCost,
-    /// The launch that somebody waits for.
-    under_way: Option<Launched>,
+    /// Launches that somebody waits for, in order.
+    under_way: VecDeque<Launched>,
     /// Launches of frames that nobody waited for.
     unwatched: Vec<Launched>,
     /// Other commands of such frames: PoCL 3.1 aborts where an event fails that was let go before it was over.
@@ -78,7 +79,7 @@ impl Wave {
             depths: UploadedShared::new("the depth image"),
             pace: Pace::new(),
             cost: FrameCost::default(),
-            under_way: None,
+            under_way: VecDeque::new(),
             unwatched: Vec::new(),
             held: Vec::new(),
             options: options.clone(),

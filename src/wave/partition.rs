@@ -65,9 +65,11 @@ impl Pace {
         }
     }
 
-    /// How many of the next `left` pixels to launch: as many as the pace allows with all sources, but not too few.
+    /// How many of the next `left` pixels to launch: as many as the pace allows with all sources that a launch may take,
+    /// but not too few.
     pub(super) fn pixels(&self, work: &Work, left: u32) -> u32 {
-        let samples = f64::from(work.node_count) * work.source_count.max(1) as f64;
+        let sources = work.source_count.clamp(1, work.most_sources);
+        let samples = f64::from(work.node_count) * sources as f64;
         let affordable = self.samples / samples;
         let pixels = affordable.min(f64::from(left)) as u32;
         let grains = pixels.max(work.fewest_pixels).div_ceil(work.grain);

@@ -60,3 +60,10 @@ INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distan
         over_v = select(over_v, with_floor(distance2, floor2, decay, stretch, x0, x1, is_square), is_floored);
     return (is_square ? 4.0f : 2.0f) * decay.strength * over_v;
 }
+
+// The parameter s at which a ray climbs through height 0 over a plane, where a stretch ends; a ray that never does
+// stays on its side.
+INLINE floatv climbs_through(const floatv height, const floatv height_slope, const floatv end) {
+    const floatv slope = select(height_slope, splat(1e-30f), fabs(height_slope) < 1e-30f);
+    return clamp(-height / slope, 0.0f, end);
+}

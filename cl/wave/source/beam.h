@@ -68,12 +68,6 @@ floatv beam_field(const beam_path *const path, const floatv s) {
     return fma(splat(path->sphere), of_tip, select(path->line * of_line, behind, height < 0.0f));
 }
 
-// Where a ray climbs through height 0; one that never does stays on its side.
-INLINE floatv climbs_through(const floatv height, const floatv height_slope, const floatv end) {
-    const floatv slope = select(height_slope, splat(1e-30f), fabs(height_slope) < 1e-30f);
-    return clamp(-height / slope, 0.0f, end);
-}
-
 // Light is the integral alone; coefficients are in it.
 INLINE floatv beam_integral(const Ray *const ray, const Sources *const sources, const uint index,
                             const Quadrature *const quadrature) {
