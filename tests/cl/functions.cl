@@ -47,19 +47,3 @@ __kernel void spline(__global const SplinePiece *pieces, __global const float *c
                      __global float *result) {
     STORE(spline_at(pieces, (uint)count[0], LOAD(ts)), result);
 }
-
-// 1 / field at the point S + s (E - S), for the first source of a kind.
-#define FIELD_KERNEL(kind, Type, number)                                                                               \
-    __kernel void kind##_distance(__global const Type *first, __global const float *ox, __global const float *oy,      \
-                                  __global const float *oz, __global const float *dx, __global const float *dy,        \
-                                  __global const float *dz, __global const float *ss, __global float *result) {        \
-        Sources sources = {0};                                                                                         \
-        sources.kind##_list = first;                                                                                   \
-        const fine3v origin = {to_finev(LOAD(ox)), to_finev(LOAD(oy)), to_finev(LOAD(oz))};                            \
-        const fine3v span = {to_finev(LOAD(dx)), to_finev(LOAD(dy)), to_finev(LOAD(dz))};                              \
-        const Ray ray = make_ray(origin, span, splat(1.0f), length3(from_fine3(span)), 0.0f);                          \
-        const kind##_path path = kind##_along(&ray, &sources, 0);                                                      \
-        STORE(1.0f / kind##_field(&path, LOAD(ss)), result);                                                           \
-    }
-
-KINDS(FIELD_KERNEL)

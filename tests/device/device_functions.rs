@@ -10,6 +10,17 @@ use energywave::internals::{self, Argument, Compute, DeviceBuffer, KINDS, Progra
 use glam::DVec3;
 
 const FUNCTIONS: &str = include_str!("../cl/functions.cl");
+const DISTANCE: &str = include_str!("../cl/distance.cl");
+
+/// The functions that are the same for all kinds of source, and the distance to the core of each kind.
+fn text() -> String {
+    let distance = |kind: &str| {
+        let type_name = kind[..1].to_uppercase() + &kind[1..];
+        DISTANCE.replace("KIND", kind).replace("TYPE", &type_name)
+    };
+    let distances: String = KINDS.iter().map(|kind| distance(kind)).collect();
+    format!("{FUNCTIONS}\n{distances}")
+}
 
 /// Four Newton steps leave a few roundings of float32.
 const CUBE_ROOT_ERROR: f64 = 5e-7;
@@ -40,7 +51,7 @@ impl Bench {
         let compute = common::compute();
         let options = common::options(lanes, extra);
         let program =
-            internals::build_text(&compute, "functions.cl", FUNCTIONS, &KINDS, &options).unwrap();
+            internals::build_text(&compute, "functions.cl", &text(), &KINDS, &options).unwrap();
         Self { compute, program }
     }
 

@@ -53,7 +53,9 @@ fn scene(method: Method) -> Scene {
     scene.integration.method = method;
     let axis = [0.1, 0.2, 2.0];
     scene.tori.push(common::torus([0.1, 0.0, 0.0], axis, 0.9));
-    scene.curves.push(common::curve(common::CURVE_SHAPES[0], None));
+    scene
+        .curves
+        .push(common::curve(common::CURVE_SHAPES[0], None));
     scene
 }
 
@@ -103,7 +105,10 @@ fn off(found: &[Pixel], wave: &[Pixel], painted: &[[f64; 3]]) -> f32 {
             ((f64::from(found[channel]) - expected).abs() / expected.max(1.0)) as f32
         })
     });
-    errors.fold(0.0, |worst, error| if error <= worst { worst } else { error })
+    errors.fold(
+        0.0,
+        |worst, error| if error <= worst { worst } else { error },
+    )
 }
 
 fn wave(compute: &Compute, options: &RendererOptions) -> Wave {
@@ -118,7 +123,10 @@ fn every_pixel_is_the_sum_of_two_engines_light_in_every_format() {
         common::by(Sampling::Pixels),
         common::by(Sampling::Tiles),
     ];
-    for (lanes, method) in lane_widths().into_iter().flat_map(|l| methods.map(|m| (l, m))) {
+    for (lanes, method) in lane_widths()
+        .into_iter()
+        .flat_map(|l| methods.map(|m| (l, m)))
+    {
         let scene = scene(method);
         let painted = painted(&scene);
         let mut wave = wave(&compute, &common::options(lanes, ""));
@@ -158,7 +166,12 @@ fn the_wave_adds_to_what_another_engine_drew_before() {
         let mut film = film(&compute, format);
         film.reserve_band(&compute, alone.len(), 1).unwrap();
         film.leave_unfinished(true);
-        paint(&compute, &engine(&compute, lanes, format), &scene, &mut film);
+        paint(
+            &compute,
+            &engine(&compute, lanes, format),
+            &scene,
+            &mut film,
+        );
         film.leave_unfinished(false);
         film.add_to_what_is_there(true);
         draw_wave(&mut wave, &compute, &scene, &mut film).unwrap();
@@ -182,9 +195,17 @@ fn without_adding_only_the_second_engines_light_is_left() {
         film.leave_unfinished(true);
         draw_wave(&mut wave, &compute, &scene, &mut film).unwrap();
         film.leave_unfinished(false);
-        paint(&compute, &engine(&compute, lanes, format), &scene, &mut film);
+        paint(
+            &compute,
+            &engine(&compute, lanes, format),
+            &scene,
+            &mut film,
+        );
         let pixels = read(&compute, &film);
-        let (sum, only) = (off(&pixels, &alone, &painted), off(&pixels, &dark, &painted));
+        let (sum, only) = (
+            off(&pixels, &alone, &painted),
+            off(&pixels, &dark, &painted),
+        );
         assert!(sum > 0.01, "{format:?}: the sum all the same");
         assert!(only <= limit, "{format:?}: {only:e}");
     }
@@ -200,6 +221,9 @@ fn a_film_of_another_size_is_refused() {
         let mut film = film(&compute, *format);
         let error = draw_wave(&mut wave, &compute, &larger, &mut film).unwrap_err();
         let words = error.to_string();
-        assert!(words.contains("37x21") && words.contains("37x22"), "{words}");
+        assert!(
+            words.contains("37x21") && words.contains("37x22"),
+            "{words}"
+        );
     }
 }

@@ -96,7 +96,9 @@ fn kernels_that_compute_wrong_are_refused_until_somebody_insists() {
                     };
                     let words = error.to_string();
                     assert!(matches!(error, Error::SelfTest { .. }), "{name}: {words}");
-                    assert!(words.contains("computes wrong") && words.contains("choose another device"));
+                    assert!(
+                        words.contains("computes wrong") && words.contains("choose another device")
+                    );
                     assert!(words.starts_with(&common::device().name), "{words}");
                 }
                 let wrong = draw(&mut renderer(spoiled, true), name, &scene).unwrap();

@@ -20,8 +20,12 @@ fn device() -> Renderer {
 fn tall_scene(method: Method) -> Scene {
     let mut scene = common::empty_scene(70, 600);
     scene.integration.method = method;
-    scene.tori.push(common::torus([0.1, 0.0, 0.0], [0.1, 0.2, 2.0], 0.9));
-    scene.beams.push(common::beam([-0.3, 0.2, 0.4], [1.0, 0.15, 0.3], None));
+    scene
+        .tori
+        .push(common::torus([0.1, 0.0, 0.0], [0.1, 0.2, 2.0], 0.9));
+    scene
+        .beams
+        .push(common::beam([-0.3, 0.2, 0.4], [1.0, 0.15, 0.3], None));
     scene
 }
 
@@ -42,7 +46,9 @@ fn in_parts(renderer: &mut Renderer, scene: &Scene, ends: &[u32], gap: usize) ->
     for end in ends {
         let rows = begin..*end;
         let mut target = vec![MARK; rows.len() * (row + gap)];
-        renderer.render_rows(scene, rows, &mut target, row + gap).unwrap();
+        renderer
+            .render_rows(scene, rows, &mut target, row + gap)
+            .unwrap();
         for values in target.chunks(row + gap) {
             image.extend(&values[..row]);
             assert!(values[row..].iter().all(|value| *value == MARK));
@@ -69,7 +75,9 @@ fn parts_that_begin_at_multiples_of_256_rows_are_the_whole_to_the_bit() {
         }
         // In any order.
         let mut last = vec![0.0; 4 * 70 * 88];
-        renderer.render_rows(&scene, 512..600, &mut last, 4 * 70).unwrap();
+        renderer
+            .render_rows(&scene, 512..600, &mut last, 4 * 70)
+            .unwrap();
         assert!(last == whole.as_slice()[4 * 70 * 512..], "{method:?}");
     }
 }
@@ -118,7 +126,9 @@ fn rows_that_are_not_there_are_refused_and_none_are_nothing() {
             (40..u32::MAX, "the image has 40"),
             (reversed, "rows 5 to 3, the image has 40"),
         ] {
-            let error = renderer.render_rows(&scene, rows, &mut target, row).unwrap_err();
+            let error = renderer
+                .render_rows(&scene, rows, &mut target, row)
+                .unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Unsupported);
             assert!(error.to_string().contains(words), "{error}");
         }
@@ -130,14 +140,21 @@ fn rows_that_are_not_there_are_refused_and_none_are_nothing() {
             (3..40, 37 * row, usize::MAX),
         ] {
             let target = &mut target[..length];
-            let error = renderer.render_rows(&scene, rows, target, stride).unwrap_err();
+            let error = renderer
+                .render_rows(&scene, rows, target, stride)
+                .unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Unsupported, "{error}");
         }
         for rows in [0..0, 7..7, 40..40] {
             renderer.render_rows(&scene, rows, &mut [], row).unwrap();
         }
-        assert!(target.iter().all(|value| *value == -7.0), "something was written");
-        renderer.render_rows(&scene, 39..40, &mut target[..row], row).unwrap();
+        assert!(
+            target.iter().all(|value| *value == -7.0),
+            "something was written"
+        );
+        renderer
+            .render_rows(&scene, 39..40, &mut target[..row], row)
+            .unwrap();
         assert!(target[..row].iter().all(|value| *value >= 0.0));
     }
 }
@@ -162,7 +179,10 @@ fn rays_measured_by_length_are_the_parameters_times_their_own_length() {
             for ((parameter, length), times) in by_parameter.iter().zip(&by_length).zip(lengths) {
                 for (parameter, length) in parameter.iter().zip(length) {
                     let ratio = length / parameter;
-                    assert!((ratio / times - 1.0).abs() < 1e-12, "{method:?}: {ratio}, not {times}");
+                    assert!(
+                        (ratio / times - 1.0).abs() < 1e-12,
+                        "{method:?}: {ratio}, not {times}"
+                    );
                 }
             }
         }
@@ -173,8 +193,12 @@ type Change = (&'static str, fn(&mut Scene));
 
 /// Everything of a scene that a renderer keeps something of.
 const CHANGES: [Change; 21] = [
-    ("a sphere's coefficient", |scene| scene.spheres[0].coefficient *= 1.5),
-    ("a sphere more", |scene| scene.spheres.push(common::sphere([0.1, 0.2, 0.9], 1.0))),
+    ("a sphere's coefficient", |scene| {
+        scene.spheres[0].coefficient *= 1.5
+    }),
+    ("a sphere more", |scene| {
+        scene.spheres.push(common::sphere([0.1, 0.2, 0.9], 1.0))
+    }),
     ("a sphere fewer", |scene| drop(scene.spheres.pop())),
     ("other spheres", |scene| {
         scene.spheres = List::from(vec![common::sphere([0.2, 0.2, 0.2], 2.0)]);
@@ -185,20 +209,33 @@ const CHANGES: [Change; 21] = [
         other.spheres.push(common::sphere([0.4, 0.3, 0.5], 9.0));
         std::mem::swap(&mut scene.spheres, &mut other.spheres);
     }),
-    ("a cylinder's point", |scene| scene.cylinders[0].point.z += 0.2),
-    ("a beam's direction", |scene| scene.beams[0].direction.x += 0.2),
+    ("a cylinder's point", |scene| {
+        scene.cylinders[0].point.z += 0.2
+    }),
+    ("a beam's direction", |scene| {
+        scene.beams[0].direction.x += 0.2
+    }),
     ("a beam's end", |scene| scene.beams.swap(0, 1)),
     ("a ring's radius", |scene| {
-        scene.tori.iter_mut().for_each(|torus| torus.major_radius *= 1.1);
+        scene
+            .tori
+            .iter_mut()
+            .for_each(|torus| torus.major_radius *= 1.1);
     }),
-    ("a ring's profile", |scene| scene.tori[0].profile = Profile::InverseSquare),
-    ("a curve's point", |scene| scene.curves[0].control_points[1].z += 0.3),
+    ("a ring's profile", |scene| {
+        scene.tori[0].profile = Profile::InverseSquare
+    }),
+    ("a curve's point", |scene| {
+        scene.curves[0].control_points[1].z += 0.3
+    }),
     ("a curve's series", |scene| {
         scene.curves[0].intensity = Some(vec![0.1, 0.9, 0.4, 0.3, 0.2]);
     }),
     ("the eye", |scene| scene.camera.eye.x += 0.3),
     ("the angle of view", |scene| scene.camera.fov_y = 30.0),
-    ("the ray's length", |scene| scene.camera.ray_length = Some(4.0)),
+    ("the ray's length", |scene| {
+        scene.camera.ray_length = Some(4.0)
+    }),
     ("the decay", |scene| {
         scene.decay = Some(Decay {
             alpha: 0.3,
@@ -206,7 +243,9 @@ const CHANGES: [Change; 21] = [
         });
     }),
     ("the softening", |scene| scene.integration.softening = 0.1),
-    ("the measure", |scene| scene.integration.measure = Measure::Length),
+    ("the measure", |scene| {
+        scene.integration.measure = Measure::Length
+    }),
     ("the depths", |scene| {
         scene.depth = Some(common::depths(scene, DepthAlong::Ray, |column, _| {
             2.0 + 0.1 * f64::from(column)
@@ -226,12 +265,14 @@ fn changing_scene(method: Method) -> Scene {
     let mut scene = common::full_scene(24, 17);
     scene.curves.truncate(2);
     scene.integration.method = method;
-    scene.depth = Some(common::depths(&scene, DepthAlong::Ray, |column, row| {
-        match column + row < 12 {
+    scene.depth = Some(common::depths(
+        &scene,
+        DepthAlong::Ray,
+        |column, row| match column + row < 12 {
             true => 3.0,
             false => f64::INFINITY,
-        }
-    }));
+        },
+    ));
     scene
 }
 
@@ -248,9 +289,18 @@ fn a_scene_that_changed_is_drawn_anew_and_one_that_did_not_gives_the_same_bits()
             let seen = difference(&found, &before).max;
             assert!(seen > 1e-3, "{what}, {method:?}: nothing changed");
             // A renderer that has drawn nothing keeps nothing.
-            assert!(found == device().render(&changed).unwrap(), "{what}, {method:?}");
-            assert!(renderer.render(&changed.clone()).unwrap() == found, "{what}, again");
-            assert!(renderer.render(&scene).unwrap() == before, "{what}, taken back");
+            assert!(
+                found == device().render(&changed).unwrap(),
+                "{what}, {method:?}"
+            );
+            assert!(
+                renderer.render(&changed.clone()).unwrap() == found,
+                "{what}, again"
+            );
+            assert!(
+                renderer.render(&scene).unwrap() == before,
+                "{what}, taken back"
+            );
         }
         // Equal contents in other places: the same light.
         let mut copy = changing_scene(method);
@@ -284,7 +334,10 @@ fn a_scene_that_became_wrong_is_refused_and_drawn_when_it_is_right_again() {
         scene.tori[0].major_radius *= -1.0;
         for _ in 0..2 {
             let error = renderer.render(&scene).unwrap_err();
-            assert!(error.to_string().contains("torus[0].major_radius"), "{error}");
+            assert!(
+                error.to_string().contains("torus[0].major_radius"),
+                "{error}"
+            );
         }
         scene.tori[0].major_radius *= -1.0;
         assert!(renderer.render(&scene).unwrap() == right);

@@ -391,7 +391,8 @@ fn row_of(scene: &Value, exact: f64) -> Value {
 
 #[test]
 fn verify_takes_whole_scenes_with_and_without_a_camera_by_either_measure() {
-    let torus = serde_json::json!({"major_radius": 0.9, "coefficient": 5.0, "color": [9.0, 0.5, 0.1]});
+    let torus =
+        serde_json::json!({"major_radius": 0.9, "coefficient": 5.0, "color": [9.0, 0.5, 0.1]});
     let beam = serde_json::json!({"tip": [0.1, 0.3, 0.2], "direction": [1.0, 0.1, 0.2], "color": [0.0, 2.0, 0.0]});
     let sources = serde_json::json!({
         "torus": [torus],
@@ -414,7 +415,14 @@ fn verify_takes_whole_scenes_with_and_without_a_camera_by_either_measure() {
     let verify = |rows: &[Value]| {
         let text = serde_json::to_string(rows).unwrap();
         std::fs::write(folder.path().join("rays.json"), text).unwrap();
-        folder.run(&["verify", "--rays", "rays.json", "--json", "--device", device()])
+        folder.run(&[
+            "verify",
+            "--rays",
+            "rays.json",
+            "--json",
+            "--device",
+            device(),
+        ])
     };
     let rows = [
         row_of(&sources, exact),
@@ -426,7 +434,10 @@ fn verify_takes_whole_scenes_with_and_without_a_camera_by_either_measure() {
     let found: Vec<Value> = serde_json::from_slice(&right.stdout).unwrap();
     assert_eq!(found.len(), 3, "without simpson_200 there is no row for it");
     for (row, expected) in found.iter().zip([exact, exact, exact * length]) {
-        assert_eq!((&row["kind"], &row["method"]), (&"scene".into(), &"exact".into()));
+        assert_eq!(
+            (&row["kind"], &row["method"]),
+            (&"scene".into(), &"exact".into())
+        );
         assert_eq!(row["exact"].as_f64(), Some(expected));
     }
 
@@ -456,7 +467,10 @@ fn verify_takes_whole_scenes_with_and_without_a_camera_by_either_measure() {
     let mut bare = row_of(&Value::Null, exact);
     bare.as_object_mut().unwrap().remove("scene");
     for (row, words) in [
-        (row_of(&invalid, exact), "rays.json: ray 0: scene: torus[0].major_radius: must be positive"),
+        (
+            row_of(&invalid, exact),
+            "rays.json: ray 0: scene: torus[0].major_radius: must be positive",
+        ),
         (row_of(&unknown, exact), "unknown field `toruss`"),
         (bare, "rays.json: ray 0: neither a kind nor a scene"),
     ] {

@@ -78,9 +78,15 @@ fn errors() -> Vec<(ErrorKind, &'static str, Error)> {
         (
             ErrorKind::Output,
             "output",
-            image.save(nowhere.join("a.png"), &scene.display).unwrap_err(),
+            image
+                .save(nowhere.join("a.png"), &scene.display)
+                .unwrap_err(),
         ),
-        (ErrorKind::Interrupted, "interrupted", interrupted.unwrap_err()),
+        (
+            ErrorKind::Interrupted,
+            "interrupted",
+            interrupted.unwrap_err(),
+        ),
     ]
 }
 

@@ -164,7 +164,10 @@ fn a_scene_of_defaults_is_read_as_it_was_written() {
     for (what, read) in read_again(&scene, folder.path()) {
         assert_eq!(read, scene, "{what}");
     }
-    assert!(!scene.to_toml().unwrap().contains("sphere"), "an empty list is written");
+    assert!(
+        !scene.to_toml().unwrap().contains("sphere"),
+        "an empty list is written"
+    );
 }
 
 /// A change of the last bit.
@@ -190,11 +193,17 @@ fn a_changed_value_is_noticed() {
         ("measure", |s| s.integration.measure = Measure::Length),
         ("exposure", |s| nudge(&mut s.display.exposure)),
         ("sphere", |s| nudge(&mut s.spheres[1].coefficient)),
-        ("profile", |s| s.cylinders[0].profile = Profile::InverseSquare),
-        ("cap", |s| s.beams[0].end = BeamEnd::Cap(Some(s.beams[0].coefficient))),
+        ("profile", |s| {
+            s.cylinders[0].profile = Profile::InverseSquare
+        }),
+        ("cap", |s| {
+            s.beams[0].end = BeamEnd::Cap(Some(s.beams[0].coefficient))
+        }),
         ("taper", |s| s.beams.swap(3, 7)),
         ("torus", |s| drop(s.tori.pop())),
-        ("series", |s| nudge(&mut s.curves[1].intensity.as_mut().unwrap()[2])),
+        ("series", |s| {
+            nudge(&mut s.curves[1].intensity.as_mut().unwrap()[2])
+        }),
     ];
     for (what, change) in changes {
         let mut changed = scene.clone();
@@ -209,12 +218,14 @@ fn a_changed_value_is_noticed() {
 /// Depths in code, in no file.
 fn hidden_scene() -> Scene {
     let mut scene = common::full_scene(9, 7);
-    scene.depth = Some(common::depths(&scene, DepthAlong::Axis, |column, row| {
-        match column == row {
+    scene.depth = Some(common::depths(
+        &scene,
+        DepthAlong::Axis,
+        |column, row| match column == row {
             true => f64::INFINITY,
             false => 2.0 + f64::from(column) / 3.0,
-        }
-    }));
+        },
+    ));
     scene
 }
 
@@ -242,7 +253,10 @@ fn a_depth_image_in_a_file_is_read_with_the_scene_wherever_that_is_saved() {
     assert_ne!(Scene::from_toml(&text).unwrap(), scene);
     std::fs::remove_file(&file).unwrap();
     let error = Scene::from_toml(&text).unwrap_err().to_string();
-    assert!(error.contains("depth.file") && error.contains("cannot read"), "{error}");
+    assert!(
+        error.contains("depth.file") && error.contains("cannot read"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -260,7 +274,10 @@ fn a_depth_image_that_is_in_no_file_is_refused_and_nothing_is_written() {
         assert_eq!(error.kind(), ErrorKind::Unsupported);
         let words = error.to_string();
         assert!(words.contains("the depth image is in no file"), "{words}");
-        assert!(words.contains("save it as OpenEXR and open it again"), "{words}");
+        assert!(
+            words.contains("save it as OpenEXR and open it again"),
+            "{words}"
+        );
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     let mut open = scene;
@@ -272,5 +289,8 @@ fn a_depth_image_that_is_in_no_file_is_refused_and_nothing_is_written() {
 fn a_scene_file_that_cannot_be_written_is_named() {
     let error = common::full_scene(4, 4).save("nowhere/a.toml").unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Output);
-    assert!(error.to_string().contains("nowhere/a.toml: cannot write"), "{error}");
+    assert!(
+        error.to_string().contains("nowhere/a.toml: cannot write"),
+        "{error}"
+    );
 }
