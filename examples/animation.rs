@@ -1,4 +1,4 @@
-//! Animated parameters: a beam that charges, leaves and swells. One renderer draws all frames: it keeps kernels and
+//! Animated parameters: a shot that charges, leaves and swells. One renderer draws all frames: it keeps kernels and
 //! buffers, and uploads only what changed. Writes `frame-00.png` to `frame-23.png` into the folder given.
 //!
 //! `cargo run --release --example animation -- FOLDER`
@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use energywave::image::{Display, ImageSize, ToneMap};
-use energywave::scene::{Beam, Camera, Decay, Profile, Sphere};
+use energywave::scene::{Camera, Decay, Profile, Segment, Sphere};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 
@@ -44,19 +44,15 @@ fn scene_at(time: f64) -> Scene {
         color: DVec3::new(0.4, 0.7, 1.0),
         profile: Profile::InverseSquare,
     });
-    // The beam is the light between its tip and a second one of opposite sign, which flies ahead.
     let strength = 0.2 * ramp(time, 0.45, 0.7);
     if strength > 0.0 {
-        let beam = |tip: DVec3, coefficient: f64| Beam {
-            tip,
-            coefficient,
+        let flown = 6.0 * ramp(time, 0.45, 1.0);
+        scene.segments.push(Segment {
+            coefficient: strength,
             color: DVec3::new(0.3, 0.6, 1.0),
             profile: Profile::InverseSquare,
-            ..Beam::new(DVec3::X)
-        };
-        scene.beams.push(beam(hand, strength));
-        let flown = 6.0 * ramp(time, 0.45, 1.0);
-        scene.beams.push(beam(hand + DVec3::X * flown, -strength));
+            ..Segment::new(hand, hand + DVec3::X * flown)
+        });
     }
     scene
 }

@@ -77,10 +77,11 @@ const LAYERS: [(&str, &[&str]); 9] = [
         &["opencl", "scene", "reference", "wave", "render"],
     ),
 ];
-const BELOW_ALL: [&str; 7] = [
+const BELOW_ALL: [&str; 8] = [
     "error",
     "cost",
     "memory",
+    "threads",
     "Error",
     "Result",
     "Renderer",

@@ -1,9 +1,9 @@
 //! Linear radiance to 8-bit sRGB: exposure, tone mapping, sRGB encoding, dither.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{DisplayImage, RadianceImage};
+use crate::threads;
 
 /// How linear radiance becomes an 8-bit picture.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
@@ -46,16 +46,13 @@ impl RadianceImage {
         let gain = display.exposure.exp2() as f32;
         let width = self.size.width as usize;
         let mut data = vec![0_u8; 3 * self.size.pixels()];
-        data.par_chunks_exact_mut(3)
-            .zip(self.data.par_chunks_exact(4))
-            .enumerate()
-            .for_each(|(i, (bytes, radiance))| {
-                let threshold = gradient_noise(i % width, i / width);
-                for (byte, light) in bytes.iter_mut().zip(radiance) {
-                    let shown = srgb_encode(display.tone_map.apply(light * gain));
-                    *byte = (shown * 255.0 + threshold) as u8;
-                }
-            });
+        threads::for_each_chunk(&mut data, 3, |i, bytes| {
+            let threshold = gradient_noise(i % width, i / width);
+            for (byte, light) in bytes.iter_mut().zip(&self.data[4 * i..]) {
+                let shown = srgb_encode(display.tone_map.apply(light * gain));
+                *byte = (shown * 255.0 + threshold) as u8;
+            }
+        });
         DisplayImage {
             size: self.size,
             data,

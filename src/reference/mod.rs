@@ -9,7 +9,6 @@ mod quadrature;
 use std::ops::{ControlFlow, Range};
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 #[doc(hidden)]
 pub use field::{CurveField, Field, Sample, Source, b_spline, sources};
@@ -19,6 +18,7 @@ pub use quadrature::integrate;
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
 use crate::scene::{CORE_FLOOR, Decay, Measure, Method, Profile, Ray, Scene, ViewPlane};
+use crate::threads;
 
 /// Relative error that [`exact`] aims at.
 pub const RELATIVE_ERROR: f64 = 1e-10;
@@ -125,14 +125,11 @@ pub(crate) fn render_rows(
     let first = rows.start as usize * scene.image.width as usize;
     let band_count = target.len().div_ceil(4 * band_len);
     for (band, pixels) in target.chunks_mut(4 * band_len).enumerate() {
-        pixels
-            .par_chunks_exact_mut(4)
-            .enumerate()
-            .for_each(|(i, pixel)| {
-                let index = first + band * band_len + i;
-                let light = tracer.pixel(scene, &plane, index).as_vec3();
-                pixel.copy_from_slice(&[light.x, light.y, light.z, 1.0]);
-            });
+        threads::for_each_chunk(pixels, 4, |i, pixel| {
+            let index = first + band * band_len + i;
+            let light = tracer.pixel(scene, &plane, index).as_vec3();
+            pixel.copy_from_slice(&[light.x, light.y, light.z, 1.0]);
+        });
         if progress((band + 1) as f32 / band_count as f32).is_break() {
             return Err(Error::Interrupted);
         }

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use crate::error::{Error, Result};
 use crate::memory;
 use crate::opencl::{DeviceType, Discovery, OpenClDevice, discover};
+use crate::threads;
 
 /// A device that can render. Serialises to the record that `energywave devices --json` prints.
 #[derive(Debug, Clone, Serialize)]
@@ -300,7 +301,7 @@ fn reference(index: usize) -> Device {
         platform: "built in, float64".to_owned(),
         version: "none".to_owned(),
         driver: env!("CARGO_PKG_VERSION").to_owned(),
-        compute_units: rayon::current_num_threads() as u32,
+        compute_units: threads::count() as u32,
         memory_bytes: memory,
         max_allocation_bytes: memory,
         lanes: 1,

@@ -38,6 +38,9 @@ pub(crate) struct Rows<'a> {
 /// Hears the finished share of the work, 0 to 1, and may stop it.
 type Progress<'a> = dyn FnMut(f32) -> ControlFlow<()> + 'a;
 
+/// Reads a band of pixels, numbered in the image, from the beginning of the film.
+type Read<'a> = dyn FnMut(&Film, &Compute, Range<usize>) -> Result<()> + 'a;
+
 impl DeviceRenderer {
     /// Opens a device. Kernels are built when a scene first needs them.
     ///
@@ -136,7 +139,7 @@ impl DeviceRenderer {
         plan: &Plan,
         pixels: Range<u32>,
         grain: u32,
-        read: &mut dyn FnMut(&Film, &Compute, Range<usize>) -> Result<()>,
+        read: &mut Read<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<()> {
         let Self {

@@ -19,6 +19,8 @@ macro_rules! for_each_kind {
             torus: Torus, tori;
             /// Quadratic curves of light.
             curve: Curve, curves;
+            /// Finite lines of light.
+            segment: Segment, segments;
         }
     };
 }

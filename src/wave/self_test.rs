@@ -5,7 +5,6 @@ use std::mem;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::Wave;
 use super::kernels::{Rays, Task, Variant};
@@ -18,6 +17,7 @@ use crate::scene::kinds::for_each_kind;
 use crate::scene::{
     Camera, Decay, Integration, Method, Profile, Sampling, Scene, Source, ViewPlane,
 };
+use crate::threads;
 
 /// Which pixels are compared: every so many, a number that shares no divisor with the width and the lanes.
 const STRIDE: usize = 97;
@@ -70,7 +70,7 @@ impl Wave {
         let tracer = Tracer::new(scene, scene.integration.method);
         let limit = scene.integration.method.tolerance().max(LEAST_LIMIT);
         let compared: Vec<usize> = (0..found.len()).step_by(STRIDE).collect();
-        let wrong = compared.into_par_iter().find_map_any(|index| {
+        let wrong = threads::find_any(&compared, |index| {
             let expected = tracer.pixel(scene, &plane, index);
             let is_right = agrees(found[index], expected, limit);
             (!is_right).then(|| {

@@ -1,5 +1,7 @@
 //! Reads a scene from TOML or JSON; every fault is reported with file, line, column and key.
 
+#[cfg_attr(not(feature = "json"), path = "no_json.rs")]
+mod json;
 mod locate;
 mod write;
 
@@ -237,7 +239,7 @@ impl Scene {
         let text = read_text(path)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let scene = match is_json(path) {
-            true => from_json(&text, folder, &mut adjust),
+            true => json::read(&text, folder, &mut adjust),
             false => from_toml(&text, folder, &mut adjust),
         };
         scene.map_err(|error| name_file(error, path))
@@ -255,8 +257,9 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Scene`] with the key; faults of the syntax have line and column too.
+    #[cfg(feature = "json")]
     pub fn from_json(text: &str) -> Result<Self> {
-        from_json(text, Path::new(""), &mut |_, _| Ok(()))
+        json::read(text, Path::new(""), &mut |_, _| Ok(()))
     }
 }
 
@@ -279,39 +282,6 @@ fn from_toml(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
             }
             other => other,
         })
-}
-
-fn from_json(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
-    let text = text.trim_start_matches('\u{feff}');
-    if text.trim().is_empty() {
-        return Err(empty_file().into());
-    }
-    let mut reader = serde_json::Deserializer::from_str(text);
-    let file: SceneFile = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-        let key = match error.path().to_string() {
-            unknown if unknown == "." || unknown == "?" => String::new(),
-            key => key,
-        };
-        let inner = error.inner();
-        let words = plain_words(without_position(&inner.to_string()));
-        let (key, message) = match unnamed(&words) {
-            Some((field, message)) => (format!("{key}.{field}"), message.to_owned()),
-            None => name_missing(key, words),
-        };
-        SceneError {
-            path: None,
-            position: (inner.line() > 0).then(|| (inner.line(), inner.column())),
-            key,
-            message,
-        }
-    })?;
-    reader.end().map_err(|error| SceneError {
-        path: None,
-        position: Some((error.line(), error.column())),
-        key: String::new(),
-        message: plain_words(without_position(&error.to_string())),
-    })?;
-    file.into_scene(folder, adjust)
 }
 
 fn read_text(path: &Path) -> Result<String> {
@@ -402,11 +372,6 @@ fn plain_words(message: &str) -> String {
         )
         .replace("expected struct ", "expected the table of ")
         .replace('\n', "; ")
-}
-
-/// serde_json ends its messages with a position that stands at the front of ours.
-fn without_position(message: &str) -> &str {
-    message.split(" at line ").next().unwrap_or(message)
 }
 
 fn name_file(error: Error, path: &Path) -> Error {

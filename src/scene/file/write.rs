@@ -41,8 +41,9 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::to_toml`].
+    #[cfg(feature = "json")]
     pub fn to_json(&self) -> Result<String> {
-        serde_json::to_string_pretty(self).map_err(|error| Error::Unsupported(error.to_string()))
+        super::json::write(self)
     }
 
     /// Writes a scene file; the ending chooses: `.json` is JSON, everything else TOML.
@@ -52,7 +53,7 @@ impl Scene {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let text = match super::is_json(path) {
-            true => self.to_json()?,
+            true => super::json::write(self)?,
             false => self.to_toml()?,
         };
         std::fs::write(path, text)

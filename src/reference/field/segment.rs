@@ -1,0 +1,54 @@
+//! A finite line.
+
+use glam::DVec3;
+
+use super::{Field, Parts, Sample, Source, crossing, even, nearest_to_line};
+use crate::scene::{Ray, Segment};
+
+/// The points from one end to the other; the span is their difference.
+#[derive(Debug, Clone)]
+struct FiniteLine {
+    from: DVec3,
+    span: DVec3,
+}
+
+impl Parts for Segment {
+    fn add_parts(&self, add: &mut dyn FnMut(Source)) {
+        add(Source {
+            field: Box::new(FiniteLine {
+                from: self.from,
+                span: self.to - self.from,
+            }),
+            profile: self.profile,
+            emission: self.color * self.coefficient,
+        });
+    }
+}
+
+impl Field for FiniteLine {
+    fn sample(&self, point: DVec3) -> Sample {
+        let from_begin = point - self.from;
+        let share = from_begin.dot(self.span) / self.span.length_squared();
+        // Not a number where both ends coincide: then it is nearest at both.
+        let nearest = match share {
+            share if share >= 1.0 => self.span,
+            share if share > 0.0 => {
+                let across = from_begin.cross(self.span).length_squared();
+                return even(across / self.span.length_squared());
+            }
+            _ => DVec3::ZERO,
+        };
+        even(from_begin.distance_squared(nearest))
+    }
+
+    /// Where the ray passes the ends and the line between them, and the planes in which the nearest point leaves an end.
+    fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>) {
+        let to = self.from + self.span;
+        breaks.extend([ray.nearest_to(self.from), ray.nearest_to(to)]);
+        if let Some(direction) = self.span.try_normalize() {
+            breaks.push(nearest_to_line(ray, self.from, direction));
+            breaks.push(crossing(ray, self.from, direction));
+            breaks.push(crossing(ray, to, direction));
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! A finite line of light.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{Brightness, Profile, Source, one, white};
+use crate::scene::values::{Checked, read_vector, vector};
+
+/// A finite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point between its ends. Ends
+/// that coincide make a point.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Segment {
+    /// One end.
+    #[serde(deserialize_with = "read_vector")]
+    pub from: DVec3,
+    /// The other end.
+    #[serde(deserialize_with = "read_vector")]
+    pub to: DVec3,
+    /// The paper's energy coefficient.
+    #[serde(default = "one")]
+    pub coefficient: f64,
+    /// Linear RGB.
+    #[serde(default = "white", deserialize_with = "read_vector")]
+    pub color: DVec3,
+    /// How the field falls off.
+    #[serde(default)]
+    pub profile: Profile,
+}
+
+impl Segment {
+    /// Makes a white line between two points.
+    #[must_use]
+    pub fn new(from: DVec3, to: DVec3) -> Self {
+        Self {
+            from,
+            to,
+            coefficient: one(),
+            color: white(),
+            profile: Profile::default(),
+        }
+    }
+}
+
+impl Source for Segment {
+    fn check(&self, brightness: &Brightness) -> Checked {
+        vector("from", self.from)?;
+        vector("to", self.to)?;
+        brightness.check_light(self.profile, self.coefficient, self.color, 1.0)
+    }
+
+    fn profile(&self) -> Profile {
+        self.profile
+    }
+
+    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
+        add(self.coefficient * self.color);
+    }
+
+    fn specimen(place: DVec3, profile: Profile) -> Self {
+        let reach = DVec3::new(0.9, 0.4, -0.5);
+        Self {
+            color: DVec3::new(1.0, 0.8, 0.3),
+            profile,
+            ..Self::new(place - reach, place + reach)
+        }
+    }
+}

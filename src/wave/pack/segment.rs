@@ -1,0 +1,49 @@
+//! A finite line of light on the device (`cl/wave/source/segment.h`).
+
+use bytemuck::Zeroable;
+use glam::DVec3;
+
+use super::{Anchor, Pack, SplinePiece, device_struct, is_square, line, scene};
+
+device_struct! {
+    /// A finite line of light.
+    Segment [160] {
+        from: [f32; 4] = 0,
+        from_rest: [f32; 4] = 16,
+        to: [f32; 4] = 32,
+        to_rest: [f32; 4] = 48,
+        point: [f32; 4] = 64,
+        point_rest: [f32; 4] = 80,
+        direction: [f32; 4] = 96,
+        direction_rest: [f32; 4] = 112,
+        emission: [f32; 4] = 128,
+        is_square: u32 = 144,
+        padding_0: u32 = 148,
+        padding_1: u32 = 152,
+        padding_2: u32 = 156,
+    }
+}
+
+impl Pack for scene::Segment {
+    type Device = Segment;
+
+    fn pack(&self, anchor: &Anchor, _: &mut Vec<SplinePiece>) -> Segment {
+        // Any direction will do for a point: its whole line is beyond its ends.
+        let direction = (self.to - self.from).try_normalize().unwrap_or(DVec3::X);
+        let (from, to) = (anchor.position(self.from), anchor.position(self.to));
+        let (point, direction) = line(anchor, self.from, direction);
+        Segment {
+            from: from.value,
+            from_rest: from.rest,
+            to: to.value,
+            to_rest: to.rest,
+            point: point.value,
+            point_rest: point.rest,
+            direction: direction.value,
+            direction_rest: direction.rest,
+            emission: anchor.emission(self.coefficient, self.color),
+            is_square: is_square(self.profile),
+            ..Zeroable::zeroed()
+        }
+    }
+}
