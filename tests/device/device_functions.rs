@@ -7,6 +7,7 @@ use energywave::Scene;
 use energywave::internals::b_spline;
 use energywave::internals::pack::{Anchor, Sources};
 use energywave::internals::{self, Argument, Compute, DeviceBuffer, KINDS, Program};
+use energywave::scene::Segment;
 use glam::DVec3;
 
 const FUNCTIONS: &str = include_str!("../cl/functions.cl");
@@ -309,7 +310,9 @@ fn distance_error(bench: &Bench, kernel: &str, scene: &Scene, seed: u64) -> f64 
         "cylinder_distance" => bytemuck::cast_slice(&packed.cylinders),
         "beam_distance" => bytemuck::cast_slice(&packed.beams),
         "torus_distance" => bytemuck::cast_slice(&packed.tori),
-        _ => bytemuck::cast_slice(&packed.curves),
+        "segment_distance" => bytemuck::cast_slice(&packed.segments),
+        "curve_distance" => bytemuck::cast_slice(&packed.curves),
+        other => panic!("no sources for {other}"),
     };
     let column = |part: fn(&Ray) -> f64| rays.iter().map(|r| part(r) as f32).collect::<Vec<f32>>();
     let inputs = [
@@ -383,6 +386,23 @@ fn distance_cases() -> Vec<(&'static str, Scene)> {
         let mut scene = empty();
         scene.curves.push(common::curve(shape, None));
         cases.push(("curve_distance", scene));
+    }
+    // Nearest to an end, or in between; and a point.
+    for (from, to) in [
+        ([6.0, 0.9, 0.8], [7.0, 1.0, 1.0]),
+        ([-9.0, -1.2, -1.4], [9.0, 0.6, 2.2]),
+        ([0.3, 0.2, 0.1], [0.3, 0.2, 0.1]),
+    ] {
+        let mut scene = empty();
+        scene.segments.push(Segment::new(from.into(), to.into()));
+        cases.push(("segment_distance", scene));
+    }
+    for kind in KINDS {
+        let kernel = format!("{kind}_distance");
+        assert!(
+            cases.iter().any(|(name, _)| *name == kernel),
+            "no case of {kind}"
+        );
     }
     cases
 }

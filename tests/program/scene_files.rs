@@ -4,9 +4,10 @@ use std::path::Path;
 
 use crate::common;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, ToneMap};
+use energywave::internals::KINDS;
 use energywave::scene::{
     Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Integration, Measure, Method, Profile, Sampling,
-    Sphere, Torus,
+    Segment, Sphere, Torus,
 };
 use energywave::{ErrorKind, Scene};
 use fastrand::Rng;
@@ -55,6 +56,12 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 profile,
             });
         }
+        scene.segments.push(Segment {
+            coefficient: number(random),
+            color: vector(random),
+            profile,
+            ..Segment::new(vector(random), vector(random))
+        });
         scene.tori.push(Torus {
             center: vector(random),
             axis: vector(random),
@@ -111,10 +118,17 @@ fn rich_scenes() -> Vec<Scene> {
             measure: [Measure::Parameter, Measure::Length][index % 2],
             softening: [0.0, number(random)][index / 2 % 2],
         };
-        scene.display.exposure = number(random);
+        scene.display.exposure = number(random).min(99.0);
         scene.display.tone_map = [ToneMap::Exponential, ToneMap::Clamp][index / 2 % 2];
         add_sources(&mut scene, random);
         scene.validate().unwrap();
+        let text = scene.to_toml().unwrap();
+        for kind in KINDS {
+            assert!(
+                text.contains(&format!("[[{kind}]]")),
+                "no source of the kind {kind}"
+            );
+        }
         scenes.push(scene);
     }
     scenes
@@ -160,7 +174,7 @@ fn every_kind_profile_end_series_decay_and_method_is_read_as_it_was_written() {
 #[test]
 fn a_scene_of_defaults_is_read_as_it_was_written() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));
+    let scene = Scene::new(Camera::new(4.0 * DVec3::X, DVec3::ZERO));
     for (what, read) in read_again(&scene, folder.path()) {
         assert_eq!(read, scene, "{what}");
     }
