@@ -5,10 +5,16 @@ use std::borrow::Cow;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::kinds::{for_each_kind, list_kinds};
+use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
 
-for_each_kind!(list_kinds);
+macro_rules! declare_kinds {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        $(mod $kind;)*
+        $(pub use $kind::*;)*
+    };
+}
+for_each_kind!(declare_kinds);
 
 /// How a field falls off with the distance d to its core.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
