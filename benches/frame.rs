@@ -4,11 +4,12 @@
 #![allow(clippy::unwrap_used)] // a bench that fails stops
 
 use std::hint::black_box;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use energywave::image::ImageSize;
 use energywave::internals::ViewPlane;
-use energywave::internals::pack::{Anchor, Sources};
+use energywave::internals::pack::{Anchor, SourceFacts, Sources};
 use energywave::papers::{DIVISIONS, RESOLUTIONS, Table, turned};
 use energywave::scene::{Curve, Cylinder, Method, Sphere, Torus};
 use energywave::{Device, Renderer, Scene};
@@ -90,7 +91,7 @@ fn exact(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("exact, {name}"));
         scene.image.width = 512;
         scene.image.height = 512;
-        scene.integration.divisions = 200;
+        scene.integration.method = Method::simpson(200);
         group.throughput(Throughput::Elements(512 * 512));
         let mut frame = 0;
         let mut time = |name: String, scene: &Scene| {
@@ -113,13 +114,57 @@ fn exact(criterion: &mut Criterion) {
     bench("curve", Table::Bezier.scene(512, 200));
 }
 
-fn packing(criterion: &mut Criterion) {
-    let scene = crowd("spheres", 4096);
+/// What is done for every source of a scene, at 100 000 spheres: each on its own when something changed, and what a frame
+/// takes besides its kernels when nothing did.
+fn of_every_source(criterion: &mut Criterion) {
+    const COUNT: u32 = 100_000;
+    let mut scene = crowd("spheres", COUNT);
+    scene.image = ImageSize {
+        width: 128,
+        height: 128,
+    };
     let plane = ViewPlane::new(&scene.camera, scene.image);
-    criterion.bench_function("pack 4096 spheres", |bencher| {
-        let anchor = Anchor::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
-        bencher.iter(|| black_box(Sources::new(&scene, &anchor)));
+    let anchor = Anchor::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
+    let mut group = criterion.benchmark_group("100000 spheres");
+    group.bench_function("validate", |bencher| {
+        bencher.iter(|| scene.validate().unwrap());
     });
+    group.bench_function("look for signs and profiles", |bencher| {
+        bencher.iter(|| {
+            let mut facts = SourceFacts::default();
+            facts.update(black_box(&scene));
+            facts
+        });
+    });
+    let mut packed = Sources::new(&scene, &anchor);
+    group.bench_function("pack", |bencher| {
+        bencher.iter(|| packed.fill(black_box(&scene), &anchor));
+    });
+    let again = packed.clone();
+    group.bench_function("compare packed lists", |bencher| {
+        bencher.iter(|| black_box(&packed.spheres) == black_box(&again.spheres));
+    });
+    let mut renderer = renderer();
+    scene.integration.method = Method::default();
+    let mut besides_kernels = |scene: &Scene| {
+        let begun = Instant::now();
+        drop(renderer.render_mapped(scene).unwrap());
+        begun.elapsed().saturating_sub(renderer.last_cost().kernel)
+    };
+    group.bench_function("a frame that did not change, besides kernels", |bencher| {
+        bencher.iter_custom(|count| (0..count).map(|_| besides_kernels(&scene)).sum());
+    });
+    let mut other = scene.clone();
+    other.spheres[0].coefficient *= 1.5;
+    group.bench_function(
+        "a frame with a changed sphere, besides kernels",
+        |bencher| {
+            bencher.iter_custom(|count| {
+                let frames = (0..count).map(|k| if k % 2 == 0 { &other } else { &scene });
+                frames.map(&mut besides_kernels).sum()
+            });
+        },
+    );
 }
 
 fn read_back(criterion: &mut Criterion) {
@@ -141,6 +186,6 @@ criterion_group! {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(1));
-    targets = tables, sources, exact, packing, read_back
+    targets = tables, sources, exact, of_every_source, read_back
 }
 criterion_main!(benches);

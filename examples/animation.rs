@@ -40,16 +40,16 @@ fn scene_at(time: f64) -> Scene {
     let charge = ramp(time, 0.0, 0.5);
     scene.spheres.push(Sphere {
         center: hand,
-        coefficient: 0.5 * charge,
-        color: DVec3::new(0.4, 0.7, 1.0),
+        coefficient: 0.16 * charge,
+        color: DVec3::new(0.25, 0.55, 1.3),
         profile: Profile::InverseSquare,
     });
-    let strength = 0.2 * ramp(time, 0.45, 0.7);
+    let strength = 0.07 * ramp(time, 0.45, 0.7);
     if strength > 0.0 {
         let flown = 6.0 * ramp(time, 0.45, 1.0);
         scene.segments.push(Segment {
             coefficient: strength,
-            color: DVec3::new(0.3, 0.6, 1.0),
+            color: DVec3::new(0.2, 0.5, 1.3),
             profile: Profile::InverseSquare,
             ..Segment::new(hand, hand + DVec3::X * flown)
         });

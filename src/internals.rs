@@ -24,7 +24,7 @@ use crate::scene::kinds::KIND_COUNT;
 use crate::wave;
 
 /// The names of all kinds of source, in the order of the table.
-pub const KINDS: [&str; KIND_COUNT] = crate::scene::KINDS;
+pub const KINDS: [&str; KIND_COUNT] = crate::scene::kinds::KINDS;
 
 /// Adds options for the OpenCL compiler.
 ///

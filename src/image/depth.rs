@@ -42,7 +42,7 @@ impl DepthImage {
     /// Takes `values` as they are.
     ///
     /// # Errors
-    /// [`Error::Scene`] if there is not one value for each pixel, or one is not a number or negative.
+    /// [`Error::Scene`](crate::Error::Scene) if there is not one value for each pixel, or one is not a number or negative.
     pub fn new(size: ImageSize, along: DepthAlong, values: Vec<f32>) -> Result<Self> {
         let fault = |message: String| Err(SceneError::value("depth", message).into());
         if values.len() != size.pixels() {

@@ -15,6 +15,9 @@ use super::failure::{failed, fault, refused};
 use super::handle::Handle;
 use crate::error::{Error, Result};
 
+/// A pixel: linear RGBA.
+pub type Pixel = [f32; 4];
+
 /// A buffer of `T` in device memory.
 #[derive(Debug)]
 pub struct DeviceBuffer<T> {

@@ -4,20 +4,18 @@
 //! Light is gathered in a buffer of float32. Where finished pixels are wanted as half floats or in an image, the last
 //! launch of a pixel stores it there instead (`cl/film.h`).
 
-use std::ops::{Deref, DerefMut, Range};
+use std::ops::Range;
 
 use opencl3::memory::{CL_FLOAT, CL_HALF_FLOAT, CL_RGBA, ClMem, Image};
 use opencl3::types::cl_mem;
 
+use super::half::half_to_float;
 use super::handle::Handle;
 use super::image::{create_image, read_image};
-use super::kernel::{Argument, RawMemory};
+use super::kernel::{Argument, RawMemory, by_value};
 use super::layout::device_struct;
-use super::{Compute, DeviceBuffer, DeviceType};
+use super::{Compute, DeviceBuffer, Pixel};
 use crate::error::{Error, Result};
-
-/// A pixel: linear RGBA.
-pub type Pixel = [f32; 4];
 
 device_struct! {
     /// Which pixels a launch draws, and where they go.
@@ -30,6 +28,8 @@ device_struct! {
         is_last: u32 = 20,
     }
 }
+
+by_value!(FilmPart);
 
 /// What finished pixels are stored as. Kernels are built for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -80,7 +80,7 @@ enum Target {
 #[derive(Debug)]
 pub struct Film {
     /// Float32 pixels, if any were needed.
-    pixels: Option<DeviceBuffer<Pixel>>,
+    pub(super) pixels: Option<DeviceBuffer<Pixel>>,
     target: Target,
     /// Width and height of a target of its own, which takes no other.
     size: Option<(u32, u32)>,
@@ -237,7 +237,7 @@ impl Film {
         })
     }
 
-    fn pixels(&self) -> Result<&DeviceBuffer<Pixel>> {
+    pub(super) fn pixels(&self) -> Result<&DeviceBuffer<Pixel>> {
         self.pixels
             .as_ref()
             .ok_or_else(|| Error::OutOfMemory("the film has no buffer".to_owned()))
@@ -275,46 +275,6 @@ impl Film {
         buffer.read_rows(compute, pixels, row, target, stride)
     }
 
-    /// Maps the first pixels into host memory, after all earlier commands of the queue: on a CPU, nothing is copied.
-    pub(crate) fn map<'a>(
-        &'a mut self,
-        compute: &'a Compute,
-        pixels: usize,
-    ) -> Result<MappedFilm<'a>> {
-        Ok(MappedFilm {
-            pointer: self.pixels()?.map(compute, pixels)?,
-            pixels,
-            film: self,
-            compute,
-        })
-    }
-
-    /// Whether the device itself can write these pixels of the caller: its memory is the host's, and they begin as kernels
-    /// want them.
-    pub(crate) fn reaches(compute: &Compute, target: &[Pixel]) -> bool {
-        let device = compute.device();
-        !target.is_empty()
-            && device.device_type == DeviceType::Cpu
-            && device.shares_host_memory
-            && target.as_ptr().addr().is_multiple_of(size_of::<Pixel>())
-            && size_of_val(target) as u64 <= most_bytes(compute)
-    }
-
-    /// Puts the caller's memory in the place of the buffer, as long as the guard lives.
-    pub(crate) fn lend<'a>(
-        &'a mut self,
-        compute: &'a Compute,
-        target: &'a mut [Pixel],
-    ) -> Result<FilmInPlace<'a>> {
-        // SAFETY: the guard drops the buffer before the borrow ends, when the device is done with it.
-        let buffer = unsafe { DeviceBuffer::around(compute, target) }?;
-        Ok(FilmInPlace {
-            own: self.pixels.replace(buffer),
-            film: self,
-            compute,
-        })
-    }
-
     /// A film in someone else's buffer of float32, for all pixels. What is gathered otherwise goes to `self`'s memory.
     pub(super) fn aim_at_buffer(&mut self, buffer: cl_mem) {
         self.target = Target::Buffer(buffer);
@@ -341,7 +301,7 @@ impl Default for Film {
 }
 
 /// Of the film's own buffer.
-fn most_bytes(compute: &Compute) -> u64 {
+pub(super) fn most_bytes(compute: &Compute) -> u64 {
     let device = compute.device();
     // A quarter of the memory leaves room for the sources and for everyone else.
     let bytes = device.max_allocation_bytes.min(device.memory_bytes / 4);
@@ -368,117 +328,11 @@ impl FilmArguments {
     }
 }
 
-/// A film's pixels in host memory, readable until it is dropped.
-#[derive(Debug)]
-pub(crate) struct MappedFilm<'a> {
-    pointer: *const f32,
-    pixels: usize,
-    film: &'a mut Film,
-    compute: &'a Compute,
-}
-
-impl Deref for MappedFilm<'_> {
-    type Target = [f32];
-
-    fn deref(&self) -> &[f32] {
-        // SAFETY: the driver mapped 4 floats for each pixel here, for reading, until the guard is dropped.
-        unsafe { std::slice::from_raw_parts(self.pointer, 4 * self.pixels) }
-    }
-}
-
-impl Drop for MappedFilm<'_> {
-    fn drop(&mut self) {
-        let pixels = self.film.pixels.take();
-        // A driver that refuses may have lost the device: the next call on it will say so. If it has not, the next image
-        // needs a buffer of its own, since nothing may be written to one that is mapped.
-        self.film.pixels = pixels.filter(|it| it.unmap(self.compute, self.pointer).is_ok());
-    }
-}
-
-/// A film while its buffer is the caller's memory; dropped when nothing uses that any more.
-#[derive(Debug)]
-pub(crate) struct FilmInPlace<'a> {
-    film: &'a mut Film,
-    compute: &'a Compute,
-    own: Option<DeviceBuffer<Pixel>>,
-}
-
-impl FilmInPlace<'_> {
-    /// Lets the host see what the device wrote: only a mapping makes sure of that.
-    pub(crate) fn show_host(&self, pixels: usize) -> Result<()> {
-        let buffer = self.film.pixels()?;
-        let pointer = buffer.map(self.compute, pixels)?;
-        buffer.unmap(self.compute, pointer)
-    }
-}
-
-impl Deref for FilmInPlace<'_> {
-    type Target = Film;
-
-    fn deref(&self) -> &Film {
-        self.film
-    }
-}
-
-impl DerefMut for FilmInPlace<'_> {
-    fn deref_mut(&mut self) -> &mut Film {
-        self.film
-    }
-}
-
-impl Drop for FilmInPlace<'_> {
-    fn drop(&mut self) {
-        // Also after an error, or a panic of `progress`, launches may be under way. A driver that refuses has lost the
-        // device, and these with it.
-        let _ = self.compute.queue.finish();
-        self.film.pixels = self.own.take();
-    }
-}
-
-/// A half float (IEEE 754 binary16) as float32.
-fn half_to_float(bits: u16) -> f32 {
-    let (exponent, fraction) = (bits >> 10 & 0x1f, f32::from(bits & 0x3ff) / 1024.0);
-    let magnitude = match exponent {
-        0 => fraction * 2.0_f32.powi(-14),
-        31 if fraction == 0.0 => f32::INFINITY,
-        31 => f32::NAN,
-        exponent => (1.0 + fraction) * 2.0_f32.powi(i32::from(exponent) - 15),
-    };
-    if bits >> 15 == 1 {
-        -magnitude
-    } else {
-        magnitude
-    }
-}
-
 /// Whether an image's channels are half floats or float32; `None`: neither, or not RGBA.
 pub(super) fn halves_of(order: u32, channel_type: u32) -> Option<bool> {
     match (order, channel_type) {
         (CL_RGBA, CL_FLOAT) => Some(false),
         (CL_RGBA, CL_HALF_FLOAT) => Some(true),
         _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::half_to_float;
-
-    #[test]
-    fn half_floats_are_read() {
-        let known = [
-            (0x3c00, 1.0),
-            (0xc000, -2.0),
-            (0x7bff, 65504.0),
-            (0x0400, 2.0_f32.powi(-14)),
-            (0x0001, 2.0_f32.powi(-24)),
-            (0x3555, 0.333_251_95),
-            (0x7c00, f32::INFINITY),
-            (0x0000, 0.0),
-        ];
-        for (bits, value) in known {
-            assert_eq!(half_to_float(bits), value, "{bits:#x}");
-        }
-        assert!(half_to_float(0x7e00).is_nan());
     }
 }

@@ -10,10 +10,9 @@ use opencl3::memory::{
 };
 use opencl3::types::{CL_FALSE, CL_TRUE, cl_mem};
 
-use super::Compute;
 use super::failure::failed;
-use super::film::Pixel;
 use super::handle::Handle;
+use super::{Compute, Pixel};
 use crate::error::Result;
 
 /// Makes an image of float32 RGBA that kernels write.

@@ -66,8 +66,6 @@ macro_rules! by_value {
 }
 pub(crate) use by_value;
 
-by_value!(super::film::FilmPart);
-
 pub(crate) fn set_value<T: Pod>(
     kernel: &ClKernel,
     index: u32,

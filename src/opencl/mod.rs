@@ -12,6 +12,8 @@ mod counters;
 mod discover;
 mod failure;
 mod film;
+mod film_memory;
+mod half;
 mod handle;
 mod host;
 mod host_image;
@@ -27,7 +29,7 @@ mod source;
 mod uploaded;
 
 pub use affinity::keep_pocl_threads_apart;
-pub use buffer::DeviceBuffer;
+pub use buffer::{DeviceBuffer, Pixel};
 #[cfg(feature = "kernel-cache")]
 pub use cache::KernelCache;
 pub use compute::Compute;
@@ -35,8 +37,8 @@ pub(crate) use copies::state;
 pub(crate) use counters::wait;
 pub use counters::{Counted, Counters};
 pub use discover::{DeviceType, Discovery, OpenClDevice, discover};
-pub(crate) use film::MappedFilm;
-pub use film::{Film, FilmFormat, FilmPart, Pixel};
+pub use film::{Film, FilmFormat, FilmPart};
+pub(crate) use film_memory::MappedFilm;
 pub(crate) use handle::Handle;
 pub use host::HostTarget;
 pub(crate) use host::{HostLink, unfit};

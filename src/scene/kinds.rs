@@ -26,16 +26,13 @@ macro_rules! for_each_kind {
 }
 pub(crate) use for_each_kind;
 
-macro_rules! list_kinds {
+macro_rules! name_kinds {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
-        $(mod $kind;)*
-        $(pub use $kind::*;)*
+        /// Number of kinds.
+        pub(crate) const KIND_COUNT: usize = [$(stringify!($kind)),*].len();
 
         /// The names of all kinds, in the order of the table.
-        pub(crate) const KINDS: [&str; [$(stringify!($kind)),*].len()] = [$(stringify!($kind)),*];
+        pub(crate) const KINDS: [&str; KIND_COUNT] = [$(stringify!($kind)),*];
     };
 }
-pub(super) use list_kinds;
-
-/// Number of kinds.
-pub(crate) const KIND_COUNT: usize = super::source::KINDS.len();
+for_each_kind!(name_kinds);

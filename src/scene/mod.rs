@@ -71,14 +71,14 @@ macro_rules! define_scene {
                 0 $(+ self.$list.len())*
             }
 
-            /// Calls `add` with the colour times the coefficient of all parts of all sources.
-            fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
-                $(self.$list.iter().for_each(|source| source.for_each_light(add));)*
+            /// Calls `add` with the emission of all parts of all sources.
+            fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+                $(self.$list.iter().for_each(|source| source.for_each_emission(add));)*
             }
 
             /// Whether any source falls off in this way.
             pub(crate) fn has_profile(&self, profile: Profile) -> bool {
-                $(self.$list.iter().any(|source| source.profile() == profile))||*
+                $(self.$list.iter().any(|source| source.light().profile == profile))||*
             }
         }
     };
@@ -98,7 +98,7 @@ impl Scene {
     /// Whether sources of opposite signs may cancel.
     pub(crate) fn has_light_of_both_signs(&self) -> bool {
         let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
-        self.for_each_light(&mut |light| (low, high) = (low.min(light), high.max(light)));
+        self.for_each_emission(&mut |light| (low, high) = (low.min(light), high.max(light)));
         low.cmplt(DVec3::ZERO).any() && high.cmpgt(DVec3::ZERO).any()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite};
-use super::{BRIGHTEST, Brightness, CORE_FLOOR, List, Measure, Scene, Source};
+use super::{BRIGHTEST, Brightness, CORE_FLOOR, List, Measure, Scene, SourceKind};
 use crate::error::{Result, SceneError};
 use crate::image::{Display, ImageSize};
 
@@ -88,7 +88,7 @@ macro_rules! check_sources {
 }
 for_each_kind!(check_sources);
 
-fn check_list<T: Source>(
+fn check_list<T: SourceKind>(
     kind: &str,
     list: &List<T>,
     brightness: &Brightness,

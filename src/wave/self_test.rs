@@ -15,7 +15,7 @@ use crate::opencl::{Compute, Film, FilmFormat, Pixel, Program};
 use crate::reference::Tracer;
 use crate::scene::kinds::for_each_kind;
 use crate::scene::{
-    Camera, Decay, Integration, Method, Profile, Sampling, Scene, Source, ViewPlane,
+    Camera, Decay, Integration, Method, Profile, Sampling, Scene, SourceKind, ViewPlane,
 };
 use crate::threads;
 
@@ -200,7 +200,7 @@ macro_rules! define_specimens {
             };
             let mut kinds = task.kinds.into_iter();
             $(if kinds.next() == Some(true) {
-                scene.$list.push(Source::specimen(place, profile));
+                scene.$list.push(SourceKind::specimen(place, profile));
             })*
         }
     };

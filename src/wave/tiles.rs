@@ -26,16 +26,14 @@ pub(super) fn first_size(image: ImageSize) -> u32 {
 /// Pixels of one launch, so that the list of open tiles stays small; a frame of 3840x2160 fits.
 pub(super) const MOST_PIXELS: u32 = 1 << 23;
 
-/// Sources of one launch.
-pub(super) const MOST_SOURCES: u64 = 3968;
+/// Words of 32 sources of one launch, of which a group of work-items holds as many: 1 KiB of the 32 KiB of local memory that
+/// OpenCL 1.2 promises.
+const MOST_WORDS: u32 = 256;
 
-/// Words of 32 sources that hold them, in local memory: each kind begins with a new word.
-const MOST_WORDS: u32 = (MOST_SOURCES / 32) as u32 + KIND_COUNT as u32 - 1;
+/// Sources of one launch. Each kind begins with a new word, so that all but one may leave 31 bits of a word unused.
+pub(super) const MOST_SOURCES: u64 = 32 * (MOST_WORDS as u64 - (KIND_COUNT as u64 - 1));
 
-/// Each kind but the first may leave 31 bits of a word unused; and 256 words are 1 KiB of the 32 that OpenCL 1.2 promises.
-const _: () = assert!(
-    MOST_SOURCES as usize + 31 * (KIND_COUNT - 1) <= 32 * MOST_WORDS as usize && MOST_WORDS <= 256
-);
+const _: () = assert!(MOST_SOURCES as usize + 31 * KIND_COUNT <= 32 * MOST_WORDS as usize + 31);
 
 /// Groups of work-items for each compute unit, which share the tiles evenly: enough for a fair share, few enough that
 /// those without a tile cost nothing (on PoCL 3.1 with 2 units 4096 groups take a ring at 512x512 1.5 times as long; half

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, even, nearest_to_line};
-use crate::scene::{Cylinder, Ray};
+use crate::scene::{Cylinder, Ray, SourceKind};
 
 /// A line through a point; the direction is a unit vector.
 #[derive(Debug, Clone)]
@@ -14,14 +14,13 @@ struct Line {
 
 impl Parts for Cylinder {
     fn add_parts(&self, add: &mut dyn FnMut(Source)) {
-        add(Source {
-            field: Box::new(Line {
+        add(Source::new(
+            Line {
                 point: self.point,
                 direction: self.direction.normalize(),
-            }),
-            profile: self.profile,
-            emission: self.color * self.coefficient,
-        });
+            },
+            self.light(),
+        ));
     }
 }
 

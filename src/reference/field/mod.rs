@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::scene::kinds::for_each_kind;
-use crate::scene::{Profile, Ray, Scene};
+use crate::scene::{Light, Profile, Ray, Scene};
 
 macro_rules! field_modules {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
@@ -50,6 +50,17 @@ pub struct Source {
     pub profile: Profile,
     /// Colour times coefficient, linear RGB.
     pub emission: DVec3,
+}
+
+impl Source {
+    /// A part with all of a source's light.
+    fn new(field: impl Field + 'static, light: Light) -> Self {
+        Self {
+            field: Box::new(field),
+            profile: light.profile,
+            emission: light.emission(),
+        }
+    }
 }
 
 /// What the reference asks of every kind of source.

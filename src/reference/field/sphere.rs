@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, even};
-use crate::scene::{Ray, Sphere};
+use crate::scene::{Ray, Sphere, SourceKind};
 
 /// A point.
 #[derive(Debug, Clone)]
@@ -11,11 +11,10 @@ pub(super) struct Point(pub DVec3);
 
 impl Parts for Sphere {
     fn add_parts(&self, add: &mut dyn FnMut(Source)) {
-        add(Source {
-            field: Box::new(Point(self.center)),
-            profile: self.profile,
-            emission: self.color * self.coefficient,
-        });
+        add(Source::new(
+            Point(self.center),
+            self.light(),
+        ));
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Field, Parts, Sample, Source, even};
-use crate::scene::{Ray, Torus};
+use crate::scene::{Ray, Torus, SourceKind};
 
 /// The circle of a ring; the axis is a unit vector.
 #[derive(Debug, Clone)]
@@ -15,15 +15,14 @@ struct Circle {
 
 impl Parts for Torus {
     fn add_parts(&self, add: &mut dyn FnMut(Source)) {
-        add(Source {
-            field: Box::new(Circle {
+        add(Source::new(
+            Circle {
                 center: self.center,
                 axis: self.axis.normalize(),
                 radius: self.major_radius,
-            }),
-            profile: self.profile,
-            emission: self.color * self.coefficient,
-        });
+            },
+            self.light(),
+        ));
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Profile, Source, one, white};
+use super::{Brightness, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, direction, finite, named, positive, read_vector, vector};
 
 /// A half-line of light (Abe, Watanabe 2010, eq. 6, 11, 12); `1/d^2` for `1/d` by its [`Profile`]. Ahead of the plane
@@ -71,7 +71,7 @@ impl Beam {
     }
 }
 
-impl Source for Beam {
+impl SourceKind for Beam {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("tip", self.tip)?;
         direction("direction", self.direction)?;
@@ -81,17 +81,25 @@ impl Source for Beam {
             BeamEnd::Cap(None) => {}
         }
         finite("sphere_coefficient", self.sphere_coefficient)?;
-        brightness.check_light(self.profile, self.coefficient, self.color, 1.0)?;
+        brightness.check_light(self.light(), 1.0)?;
         let line = self.coefficient.abs().max(self.cap().abs());
         let strongest = line + self.sphere_coefficient.abs();
-        brightness.check_light(self.profile, strongest, self.color, 1.0)
+        let strongest = Light {
+            coefficient: strongest,
+            ..self.light()
+        };
+        brightness.check_light(strongest, 1.0)
     }
 
-    fn profile(&self) -> Profile {
-        self.profile
+    fn light(&self) -> Light {
+        Light {
+            coefficient: self.coefficient,
+            color: self.color,
+            profile: self.profile,
+        }
     }
 
-    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
+    fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
         for coefficient in [self.coefficient, self.cap(), self.sphere_coefficient] {
             add(coefficient * self.color);
         }

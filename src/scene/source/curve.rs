@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{Brightness, Profile, Source, item, one, white};
+use super::{Brightness, Light, Profile, SourceKind, item, one, white};
 use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
 
 /// A quadratic Bezier curve of light: `S(t*)/d`, or by its [`Profile`] `S(t*)/d^2`, d the distance to its nearest point
@@ -43,14 +43,14 @@ impl Curve {
     }
 }
 
-impl Source for Curve {
+impl SourceKind for Curve {
     fn check(&self, brightness: &Brightness) -> Checked {
         for (k, point) in self.control_points.iter().enumerate() {
             vector("control_points", *point).map_err(|fault| fault.at(item("control_points", k)))?;
         }
         let series = self.intensity.iter().flatten();
         let strongest = series.fold(1.0_f64, |most, value| most.max(value.abs()));
-        brightness.check_light(self.profile, self.coefficient, self.color, strongest)?;
+        brightness.check_light(self.light(), strongest)?;
         let Some(series) = &self.intensity else {
             return Ok(());
         };
@@ -69,11 +69,15 @@ impl Source for Curve {
         Ok(())
     }
 
-    fn profile(&self) -> Profile {
-        self.profile
+    fn light(&self) -> Light {
+        Light {
+            coefficient: self.coefficient,
+            color: self.color,
+            profile: self.profile,
+        }
     }
 
-    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
+    fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
         for weight in self.intensity.as_deref().unwrap_or(&[1.0]) {
             add(self.coefficient * weight * self.color);
         }

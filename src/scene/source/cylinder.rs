@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Profile, Source, one, white};
+use super::{Brightness, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, direction, read_vector, vector};
 
 /// An infinite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the line (2015, eq. 3).
@@ -41,19 +41,19 @@ impl Cylinder {
     }
 }
 
-impl Source for Cylinder {
+impl SourceKind for Cylinder {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("point", self.point)?;
         direction("direction", self.direction)?;
-        brightness.check_light(self.profile, self.coefficient, self.color, 1.0)
+        brightness.check_light(self.light(), 1.0)
     }
 
-    fn profile(&self) -> Profile {
-        self.profile
-    }
-
-    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
-        add(self.coefficient * self.color);
+    fn light(&self) -> Light {
+        Light {
+            coefficient: self.coefficient,
+            color: self.color,
+            profile: self.profile,
+        }
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {

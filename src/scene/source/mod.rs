@@ -5,10 +5,16 @@ use std::borrow::Cow;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::kinds::{for_each_kind, list_kinds};
+use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
 
-for_each_kind!(list_kinds);
+macro_rules! declare_kinds {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        $(mod $kind;)*
+        $(pub use $kind::*;)*
+    };
+}
+for_each_kind!(declare_kinds);
 
 /// How a field falls off with the distance d to its core.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
@@ -22,16 +28,33 @@ pub enum Profile {
     InverseSquare,
 }
 
+/// What makes a source's core glow.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Light {
+    pub coefficient: f64,
+    pub color: DVec3,
+    pub profile: Profile,
+}
+
+impl Light {
+    /// Colour times coefficient, linear RGB.
+    pub(crate) fn emission(&self) -> DVec3 {
+        self.color * self.coefficient
+    }
+}
+
 /// What every kind of source says of itself.
-pub(crate) trait Source {
+pub(crate) trait SourceKind {
     /// Checks its values; `brightness` tells which light float32 holds.
     fn check(&self, brightness: &Brightness) -> Checked;
 
-    /// How its field falls off.
-    fn profile(&self) -> Profile;
+    /// Its light as a whole.
+    fn light(&self) -> Light;
 
-    /// Calls `add` with the colour times the coefficient of each of its parts.
-    fn for_each_light(&self, add: &mut dyn FnMut(DVec3));
+    /// Calls `add` with the emission of each of its parts, where some may be of another sign.
+    fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+        add(self.light().emission());
+    }
 
     /// A source of this kind at about `place`, for the self-test of kernels.
     fn specimen(place: DVec3, profile: Profile) -> Self;
@@ -55,14 +78,13 @@ impl Brightness {
         }
     }
 
-    /// Checks a coefficient and a colour; `weight` is the greatest local intensity.
-    fn check_light(
-        &self,
-        profile: Profile,
-        coefficient: f64,
-        color: DVec3,
-        weight: f64,
-    ) -> Checked {
+    /// Checks a light; `weight` is the greatest local intensity.
+    fn check_light(&self, light: Light, weight: f64) -> Checked {
+        let Light {
+            coefficient,
+            color,
+            profile,
+        } = light;
         finite("coefficient", coefficient)?;
         vector("color", color)?;
         let brightest = self.of(profile) * weight * coefficient.abs() * color.abs().max_element();

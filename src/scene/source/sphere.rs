@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Profile, Source, one, white};
+use super::{Brightness, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, read_vector, vector};
 
 /// A point of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the point M (2015, eq. 2).
@@ -33,18 +33,18 @@ impl Default for Sphere {
     }
 }
 
-impl Source for Sphere {
+impl SourceKind for Sphere {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("center", self.center)?;
-        brightness.check_light(self.profile, self.coefficient, self.color, 1.0)
+        brightness.check_light(self.light(), 1.0)
     }
 
-    fn profile(&self) -> Profile {
-        self.profile
-    }
-
-    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
-        add(self.coefficient * self.color);
+    fn light(&self) -> Light {
+        Light {
+            coefficient: self.coefficient,
+            color: self.color,
+            profile: self.profile,
+        }
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {

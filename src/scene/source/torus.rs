@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Profile, Source, one, plus_z, white};
+use super::{Brightness, Light, Profile, SourceKind, one, plus_z, white};
 use crate::scene::values::{Checked, direction, positive, read_vector, vector};
 
 /// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle (2015,
@@ -45,20 +45,20 @@ impl Torus {
     }
 }
 
-impl Source for Torus {
+impl SourceKind for Torus {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("center", self.center)?;
         direction("axis", self.axis)?;
         positive("major_radius", self.major_radius)?;
-        brightness.check_light(self.profile, self.coefficient, self.color, 1.0)
+        brightness.check_light(self.light(), 1.0)
     }
 
-    fn profile(&self) -> Profile {
-        self.profile
-    }
-
-    fn for_each_light(&self, add: &mut dyn FnMut(DVec3)) {
-        add(self.coefficient * self.color);
+    fn light(&self) -> Light {
+        Light {
+            coefficient: self.coefficient,
+            color: self.color,
+            profile: self.profile,
+        }
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {
