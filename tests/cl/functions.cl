@@ -1,4 +1,4 @@
-// Single device functions, for tests/device_functions.rs: each work-item takes LANES values of every list.
+// Single device functions, for tests/device/device_functions.rs: each work-item takes LANES values of every list.
 #include "elementary.h"
 #include "wave/radiance.h"
 

@@ -9,7 +9,7 @@ use energywave::papers::{DIVISIONS, RESOLUTIONS, TABLE_2010, Table, measure, tur
 use energywave::{Device, RadianceImage, Renderer, reference};
 use serde_json::Value;
 
-/// As in tests/images.rs: a sample next to a core outweighs the ray's others and has few float32 digits.
+/// As in tests/image/images.rs: a sample next to a core outweighs the ray's others and has few float32 digits.
 const WORST_PIXEL: f64 = 5e-4;
 
 #[test]
