@@ -199,7 +199,7 @@ const CHANGES: [Change; 21] = [
     ("a sphere more", |scene| {
         scene.spheres.push(common::sphere([0.1, 0.2, 0.9], 1.0))
     }),
-    ("a sphere fewer", |scene| drop(scene.spheres.pop())),
+    ("a sphere fewer", |scene| scene.spheres.truncate(1)),
     ("other spheres", |scene| {
         scene.spheres = List::from(vec![common::sphere([0.2, 0.2, 0.2], 2.0)]);
     }),

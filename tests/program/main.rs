@@ -11,3 +11,4 @@ mod cli; // runs the program: exit codes, messages and outputs
 mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
 mod scene_files; // reads again what was written
+mod verify; // checks known rays, past sources and past whole scenes

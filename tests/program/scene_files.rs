@@ -184,6 +184,8 @@ fn a_scene_of_defaults_is_read_as_it_was_written() {
     );
 }
 
+type Change = (&'static str, fn(&mut Scene));
+
 /// A change of the last bit.
 fn nudge(value: &mut f64) {
     *value = value.next_up();
@@ -194,7 +196,7 @@ fn a_changed_value_is_noticed() {
     let folder = tempfile::tempdir().unwrap();
     let scene = rich_scenes().swap_remove(2);
     assert!(matches!(scene.integration.method, Method::Exact { .. }));
-    let changes: [(&str, fn(&mut Scene)); 17] = [
+    let changes: [Change; 17] = [
         ("eye", |s| nudge(&mut s.camera.eye.x)),
         ("up", |s| nudge(&mut s.camera.up.z)),
         ("fov_y", |s| nudge(&mut s.camera.fov_y)),
@@ -214,7 +216,7 @@ fn a_changed_value_is_noticed() {
             s.beams[0].end = BeamEnd::Cap(Some(s.beams[0].coefficient))
         }),
         ("taper", |s| s.beams.swap(3, 7)),
-        ("torus", |s| drop(s.tori.pop())),
+        ("torus", |s| s.tori.truncate(1)),
         ("series", |s| {
             nudge(&mut s.curves[1].intensity.as_mut().unwrap()[2])
         }),
