@@ -4,7 +4,7 @@
 use crate::common;
 use crate::common::{difference, renderer, sampled};
 use energywave::image::{DepthAlong, ImageSize};
-use energywave::scene::{Decay, List, Measure, Method, Profile, Sampling};
+use energywave::scene::{BeamEnd, Decay, List, Measure, Method, Profile, Sampling};
 use energywave::{Device, ErrorKind, RadianceImage, Ray, Renderer, Scene};
 use glam::DVec3;
 
@@ -215,7 +215,7 @@ const CHANGES: [Change; 21] = [
     ("a beam's direction", |scene| {
         scene.beams[0].direction.x += 0.2
     }),
-    ("a beam's end", |scene| scene.beams.swap(0, 1)),
+    ("a beam's end", |scene| scene.beams[1].end = BeamEnd::Taper(2.0)),
     ("a ring's radius", |scene| {
         scene
             .tori
