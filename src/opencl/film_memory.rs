@@ -21,8 +21,8 @@ impl Film {
         })
     }
 
-    /// Whether the device itself can write these pixels of the caller: its memory is the host's, and they begin as kernels
-    /// want them.
+    /// Returns whether the device itself can write these pixels of the caller: its memory is the host's, and they begin
+    /// as kernels want them.
     pub(crate) fn reaches(compute: &Compute, target: &[Pixel]) -> bool {
         let device = compute.device();
         !target.is_empty()
@@ -69,8 +69,8 @@ impl Deref for MappedFilm<'_> {
 impl Drop for MappedFilm<'_> {
     fn drop(&mut self) {
         let pixels = self.film.pixels.take();
-        // A driver that refuses may have lost the device: the next call on it will say so. If it has not, the next image
-        // needs a buffer of its own, since nothing may be written to one that is mapped.
+        // A driver that refuses may have lost the device: the next call on it will say so. If it has not, the next
+        // image needs a buffer of its own, since nothing may be written to one that is mapped.
         self.film.pixels = pixels.filter(|it| it.unmap(self.compute, self.pointer).is_ok());
     }
 }
