@@ -88,8 +88,8 @@ typedef ulong2 pairv;
 #define as_pairv as_ulong2
 #endif
 
-// Half the lanes' pixels from their channels: red with green and blue with alpha, then pairs with pairs. Said element
-// by element the same costs a torus of 64 divisions a tenth of its frame.
+// Stores half the lanes' pixels, woven from their channels: red with green and blue with alpha, then pairs with pairs.
+// Written element by element, the same costs a torus of 64 divisions a tenth of its frame.
 void store_half(const Channels channels, const HALF_FLOATS red, const HALF_FLOATS green, const HALF_FLOATS blue) {
     floatv red_green = splat(0.0f), blue_alpha = splat(1.0f);
     red_green.even = red, red_green.odd = green, blue_alpha.even = blue;

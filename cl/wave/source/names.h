@@ -10,7 +10,7 @@
 #define KIND_integral JOIN(KIND, _integral)
 #define KIND_clearance JOIN(KIND, _clearance)
 
-// What a kind says of itself: #define curve_has_kinks 1. Whoever says nothing has not.
+// What a kind says of itself: #define curve_has_kinks 1. A kind that says nothing does not have it.
 #define KIND_HAS(what) JOIN(KIND, _has_##what)
 
 // What a kind without closed form has for the adaptive quadrature (../quadrature/adaptive.h).
