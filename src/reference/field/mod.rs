@@ -53,7 +53,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// A part with all of a source's light.
+    /// Makes a part with all of a source's light.
     fn new(field: impl Field + 'static, light: Light) -> Self {
         Self {
             field: Box::new(field),
