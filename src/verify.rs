@@ -43,7 +43,7 @@ pub struct KnownRay {
     pub simpson_200: Option<f64>,
 }
 
-/// A ray as files have it: past a whole scene, or past one source of coefficient 1.
+/// A ray as a file describes it: past a whole scene, or past one source of coefficient 1.
 #[derive(Deserialize)]
 struct RayRecord {
     start: DVec3,

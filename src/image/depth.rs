@@ -16,7 +16,7 @@ pub enum DepthAlong {
     /// The view ray itself: a distance.
     #[default]
     Ray,
-    /// The ray's part along the direction of view, as depth buffers and most renderers' Z have it.
+    /// The ray's part along the direction of view, as in depth buffers and most renderers' Z.
     Axis,
 }
 

@@ -29,7 +29,7 @@ pub(super) fn fault(device: &str, call: &'static str, what: String) -> Error {
     }
 }
 
-/// Turns the error code of a refused buffer of so many bytes into an error that says what it was for.
+/// Turns the error code of a buffer of this many bytes that was refused into an error that says what it was for.
 pub(super) fn refused<'a>(
     device: &'a str,
     what: &'a str,

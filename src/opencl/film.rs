@@ -64,7 +64,7 @@ enum Target {
     Own,
     /// A buffer of someone else, for all pixels.
     Buffer(cl_mem),
-    /// Likewise, of half floats.
+    /// A buffer of half floats of someone else, for all pixels.
     Halves(cl_mem),
     /// An image of someone else, for all pixels.
     Image {
@@ -154,8 +154,8 @@ impl Film {
         self.is_unfinished = is_unfinished;
     }
 
-    /// Makes sure of a buffer for `pixels` pixels, or for as many as the device's limits allow, a multiple of `grain`,
-    /// and returns how many it is for.
+    /// Makes sure that there is a buffer for `pixels` pixels, or for as many as the device's limits allow, a multiple
+    /// of `grain`, and returns how many it is for.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], [`Error::Device`].

@@ -84,7 +84,7 @@ pub(crate) struct FilmInPlace<'a> {
 }
 
 impl FilmInPlace<'_> {
-    /// Lets the host see what the device wrote: only a mapping makes sure of that.
+    /// Lets the host see what the device wrote: only a mapping ensures that.
     pub(crate) fn show_host(&self, pixels: usize) -> Result<()> {
         let buffer = self.film.pixels()?;
         let pointer = buffer.map(self.compute, pixels)?;

@@ -51,8 +51,8 @@ pub(super) enum Variant {
 pub(super) struct Kernels(HashMap<Task, Kernel>);
 
 impl Kernels {
-    /// Makes sure of a kernel, and returns its program if it was built now. `rule` is what the method `exact`
-    /// integrates with.
+    /// Makes sure that a kernel is built, and returns its program if it was built now. `rule` is what the method
+    /// `exact` integrates with.
     ///
     /// # Errors
     /// As [`Program::build`].
@@ -88,7 +88,7 @@ impl Kernels {
         self.0.len()
     }
 
-    /// Returns a kernel that was made sure of.
+    /// Returns a kernel that was prepared.
     pub(super) fn get(&self, task: Task) -> Result<&Kernel> {
         self.0.get(&task).ok_or_else(|| {
             Error::Unsupported("a kernel that was never built was launched".to_owned())

@@ -107,7 +107,7 @@ impl Wave {
         grain_rows(scene, self.packed.facts(scene).has_both_signs)
     }
 
-    /// Plans the frame of a valid scene: packs it, uploads what changed, and makes sure of the kernels.
+    /// Plans the frame of a valid scene: packs it, uploads what changed, and makes sure that its kernels are built.
     ///
     /// # Errors
     /// As [`crate::Renderer::render`].
@@ -188,7 +188,7 @@ impl Wave {
         self.rule.unwrap_or(fitting)
     }
 
-    /// Makes sure of the kernels and uploads what changed.
+    /// Makes sure that the kernels are built, and uploads what changed.
     fn prepare(
         &mut self,
         compute: &Compute,

@@ -19,10 +19,10 @@ use crate::scene::{
 };
 use crate::threads;
 
-/// Which pixels are compared: every so many, a number that shares no divisor with the width and the lanes.
+/// The step from one compared pixel to the next: a number that shares no divisor with the width and the lanes.
 const STRIDE: usize = 97;
 
-/// What is allowed relative to the pixel, if the tolerance is not larger: what float32 and half floats lose.
+/// The relative error that a pixel may have even if the tolerance is smaller: what float32 and half floats lose.
 const LEAST_LIMIT: f64 = 1e-3;
 
 /// Two tiles wide and high, with room for some that are smooth.

@@ -145,7 +145,7 @@ pub(super) fn workers(device: &OpenClDevice, options: &RendererOptions) -> u32 {
     options.tile_workers.unwrap_or(suitable).min(most)
 }
 
-/// Returns the groups of work-items for a pass on a device of so many compute units.
+/// Returns the groups of work-items for a pass on a device with this many compute units.
 pub(super) fn groups(pass: &TilePass, units: u32) -> usize {
     ((pass.tile_count as usize) << (2 * pass.level)).min(GROUPS_A_UNIT * units as usize)
 }

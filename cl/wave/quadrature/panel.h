@@ -1,13 +1,13 @@
 // A panel of a ray, mapped so that its integrand is smooth: v takes the decay away (decay.h), v = v0 + w sinh u the
 // peak. v0 + i w is where the squared distance to the core, continued to complex s, becomes 0: past this point of the
-// core the field is as 1 / sqrt((v - v0)^2 + w^2), and constant in u. The map decides how many nodes are needed, not
+// core the field is like 1 / sqrt((v - v0)^2 + w^2), and constant in u. The map decides how many nodes are needed, not
 // what they add up to.
 #pragma once
 #include "../../elementary.h"
 #include "../../view.h"
 #include "decay.h"
 
-// The advance of v, of that from the beginning of the ray, up to which a panel is empty.
+// The advance of v up to which a panel is empty, as a share of the advance from the beginning of the ray.
 #define SHORTEST_PANEL 1e-7f
 
 // A complex zero of the squared distance along the ray, as a parameter s.
@@ -32,7 +32,7 @@ typedef struct {
     intv is_broken;     // whether it must be cut whatever the nodes say
 } PanelSum;
 
-// Returns whether so little of v passes, beside what has passed before, that nothing adds up.
+// Returns whether so little of v passes, beside what has passed before, that it adds nothing.
 intv is_empty_panel(const Decay decay, const floatv from, const floatv to) {
     const floatv near_to = nearness(decay, to);
     const floatv all = advance(decay, splat(0.0f), splat(1.0f), to, near_to);

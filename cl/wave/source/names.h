@@ -21,7 +21,7 @@
 #define KIND_approach JOIN(KIND, _approach)
 #define KIND_near_field JOIN(KIND, _near_field)
 
-// What it has besides if it says so.
+// What it has in addition, if it says so.
 #define KIND_look_ahead JOIN(KIND, _look_ahead) // KIND_HAS(look_ahead)
 #define KIND_closed JOIN(KIND, _closed)         // KIND_HAS(closed_ends)
 #define KIND_is_uneven JOIN(KIND, _is_uneven)   // KIND_HAS(dark_parts)

@@ -19,7 +19,7 @@
 #define meet()
 #endif
 
-// Its place in the image, pixels.
+// A tile's place in the image, pixels.
 typedef struct {
     uint column, row;
 } Tile;
@@ -124,8 +124,7 @@ INLINE TileRays rays_of_tile(const Screen *const screen, const TilePass *const p
     return rays;
 }
 
-// Writes (or adds to) the pixels of a block from the ray of this number on; the image has so many columns and rows of
-// it.
+// Writes (or adds to) the pixels of a block from this ray on; the image has `columns` columns and `rows` rows of it.
 INLINE void store_block(const FilmPart *const part, const uint corner, const uint ray, const uint columns,
                         const uint rows, const float3v color, FILM_PARAMETER) {
 #ifdef STORES_WHOLE

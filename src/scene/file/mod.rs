@@ -22,7 +22,7 @@ type Adjust<'a> = &'a mut dyn FnMut(&mut Scene, &MethodKeys) -> Result<()>;
 
 macro_rules! define_scene_file {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
-        /// A scene as a file has it.
+        /// A scene as a file describes it.
         #[derive(Deserialize, Serialize)]
         #[serde(deny_unknown_fields)]
         struct SceneFile {

@@ -116,7 +116,7 @@ impl SourceKind for Beam {
     }
 }
 
-/// A beam as files have it.
+/// A beam as a file describes it.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct BeamTable {

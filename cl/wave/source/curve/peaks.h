@@ -125,8 +125,8 @@ typedef struct {
     RootCounts counts;
 } curve_near;
 
-// Returns whether the roots of the cubic have too few digits for such a squared distance. They lose as many as the
-// parabola's vertex is far from the curve's middle.
+// Returns whether the roots of the cubic have too few digits for such a squared distance. They lose the more, the
+// farther the parabola's vertex is from the curve's middle.
 bool needs_polish(const curve_path *const path, const floatv distance2) {
 #ifdef COARSE
     const float size = fabs(path->velocity_along) + fabs(path->velocity_across) + path->bend;
