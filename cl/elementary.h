@@ -5,7 +5,7 @@
 
 #define LN_2 0.693147181f
 
-// 2^x for |x| below 120: a power of two times a minimax polynomial of the rest; within 2e-7.
+// Returns 2^x for |x| below 120: a power of two times a minimax polynomial of the rest; within 2e-7.
 floatv power_of_two(const floatv x) {
     const floatv shifted = x + 12582912.0f; // 1.5 2^23: what follows the point is rounded away
     const floatv f = x - (shifted - 12582912.0f);
@@ -17,8 +17,8 @@ floatv power_of_two(const floatv x) {
     return as_floatv(as_intv(r) + (as_intv(shifted) << 23));
 }
 
-// The binary logarithm of a normal x > 0: exponent, and a minimax polynomial of the mantissa in [sqrt(1/2), sqrt(2)];
-// within 2e-7 of max(1, |log x|).
+// Returns the binary logarithm of a normal x > 0: exponent, and a minimax polynomial of the mantissa in [sqrt(1/2),
+// sqrt(2)]; within 2e-7 of max(1, |log x|).
 floatv binary_logarithm(const floatv x) {
     const intv bits = as_intv(x) - 0x3f3504f3;
     const floatv m = as_floatv((bits & 0x007fffff) + 0x3f3504f3) - 1.0f;
@@ -31,7 +31,7 @@ floatv binary_logarithm(const floatv x) {
     return fma(r, m, to_floatv(bits >> 23));
 }
 
-// atan(x) / x for x^2 up to 1: a minimax polynomial, within 1e-7.
+// Returns atan(x) / x for x^2 up to 1: a minimax polynomial, within 1e-7.
 floatv arctangent_ratio(const floatv x2) {
     floatv r = splat(2.766283480e-3f);
     r = fma(r, x2, splat(-1.573124904e-2f));

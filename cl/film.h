@@ -28,11 +28,11 @@ CHECK_SIZE(FilmPart, SIZEOF_FILMPART);
 #define IMAGE_ARGUMENT
 #endif
 
-// The buffer, and what finished pixels go to where that is another.
+// The buffer, and where finished pixels go if that is elsewhere.
 #define FILM_PARAMETER __global float4 *const restrict pixels IMAGE_PARAMETER
 #define FILM_ARGUMENT pixels IMAGE_ARGUMENT
 
-// Vectors of channels, and where those of pixels that are stored as a whole go.
+// Where channels are stored, and the function that stores a vector of them.
 #ifdef HALVES
 typedef __global half *Channels;
 #define STORE(n) JOIN(vstore_half, n)
@@ -60,14 +60,14 @@ Channels channels_of(const FilmPart *const part, const uint index, FILM_PARAMETE
 }
 #endif
 
-// What half floats hold, where pixels become that.
+// Clamps light to what half floats hold, where pixels are stored as such.
 #ifdef HALF_RANGE
 #define IN_RANGE(light) min(light, 65504.0f)
 #else
 #define IN_RANGE(light) (light)
 #endif
 
-// How many lanes have a pixel, when so many pixels are left.
+// How many lanes have a pixel where `left` pixels are left.
 #ifndef LAST_LANES
 #define LAST_LANES(left) min(left, (uint)LANES)
 #endif
@@ -88,8 +88,8 @@ typedef ulong2 pairv;
 #define as_pairv as_ulong2
 #endif
 
-// Half the lanes' pixels from their channels: red with green and blue with alpha, then pairs with pairs. Said element
-// by element the same costs a torus of 64 divisions a tenth of its frame.
+// Stores half the lanes' pixels, woven from their channels: red with green and blue with alpha, then pairs with pairs.
+// Written element by element, the same costs a torus of 64 divisions a tenth of its frame.
 void store_half(const Channels channels, const HALF_FLOATS red, const HALF_FLOATS green, const HALF_FLOATS blue) {
     floatv red_green = splat(0.0f), blue_alpha = splat(1.0f);
     red_green.even = red, red_green.odd = green, blue_alpha.even = blue;
@@ -130,8 +130,8 @@ INLINE void store_pixel(const FilmPart *const part, const uint index, const floa
     *gathered = pixel;
 }
 
-// The lanes one by one: pixels of a block of so many columns, `pitch` pixels from one row to the next, of which the
-// image has some.
+// How lanes are stored one by one: as pixels of a block of `block_width` columns, `pitch` pixels from one row to the
+// next, of which the image has some.
 typedef struct {
     uint first_lane; // of this work-item in the block
     uint block_width, pitch;
@@ -154,8 +154,8 @@ INLINE void store_clipped(const FilmPart *const part, const uint corner, const C
     }
 }
 
-// Writes (or adds) the light of LANES consecutive pixels, `begin` pixels behind the part's first; of those beyond its
-// end, nothing.
+// Writes (or adds) the light of LANES consecutive pixels, `begin` pixels after the part's first; nothing of those
+// beyond its end.
 INLINE void store_pixels(const FilmPart *const part, const uint begin, const float3v light, FILM_PARAMETER) {
     const uint count = LAST_LANES(part->count - begin);
 #ifdef STORES_WHOLE

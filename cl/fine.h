@@ -1,6 +1,6 @@
-// Positions with more digits than float32 has. Close to a core all depends on the small distance between two large
-// coordinates: these are taken in float64 where the device has it, and what is left in float32. The host sends such
-// numbers as two: the value in float32, and the rest.
+// Positions with more digits than float32 has. Close to a core everything depends on the small distance between two
+// large coordinates: these are taken in float64 where the device has it, and what is left in float32. The host sends
+// such numbers as two: the value in float32, and the rest.
 #pragma once
 #include "lanes.h"
 
@@ -45,7 +45,7 @@ fine3v fine_subtract3(const fine3v a, const fine3v b) {
     return r;
 }
 
-// a k + b
+// Returns a k + b.
 fine3v fine_fma3(const fine3v a, const finev k, const fine3v b) {
     const fine3v r = {fma(a.x, k, b.x), fma(a.y, k, b.y), fma(a.z, k, b.z)};
     return r;

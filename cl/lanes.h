@@ -2,7 +2,7 @@
 // one ray; floatv, intv and uintv hold one value for each lane, float3v a vector of space for each.
 #pragma once
 
-// For what runs once a sample: PoCL 3.1 leaves such calls in place, which costs a curve 15 % of its time.
+// For functions that run once a sample: PoCL 3.1 leaves their calls in place, which costs a curve 15 % of its time.
 #ifndef INLINE
 #define INLINE __attribute__((always_inline))
 #endif
@@ -41,9 +41,9 @@ typedef JOIN(uint, LANES) uintv;
 // The same value in every lane.
 #define splat(value) ((floatv)(value))
 
-// Whether a comparison holds in any lane. Halves are joined until two words are left: any() takes the lanes one by one
-// on PoCL 3.1, which costs a curve 7 % of its time. With -D NO_SHUFFLES vectors stay whole: oclgrind 21.10 takes the
-// halves for uninitialised.
+// Returns whether a comparison holds in any lane. Halves are joined until two words are left: any() takes the lanes one
+// by one on PoCL 3.1, which costs a curve 7 % of its time. With -D NO_SHUFFLES vectors stay whole: oclgrind 21.10 takes
+// the halves for uninitialised.
 bool any_lane(const intv condition) {
 #if LANES == 1
     return condition != 0;
@@ -87,7 +87,7 @@ float3v scale3(const float3v a, const floatv k) {
     return r;
 }
 
-// a k + b
+// Returns a k + b.
 float3v fma3(const float3v a, const floatv k, const float3v b) {
     const float3v r = {fma(a.x, k, b.x), fma(a.y, k, b.y), fma(a.z, k, b.z)};
     return r;
@@ -102,7 +102,7 @@ float3v cross3(const float3v a, const float3v b) {
     return r;
 }
 
-// The lanes one by one, into LANES values.
+// Writes the lanes one by one into LANES values.
 void scatter(const floatv value, float *const lanes) {
 #if LANES == 1
     lanes[0] = value;
@@ -111,7 +111,7 @@ void scatter(const floatv value, float *const lanes) {
 #endif
 }
 
-// LANES consecutive values.
+// Loads LANES consecutive values.
 floatv load_lanes(__global const float *const values) {
 #if LANES == 1
     return values[0];
@@ -120,7 +120,7 @@ floatv load_lanes(__global const float *const values) {
 #endif
 }
 
-// One value a lane, from memory that the lanes do not share evenly.
+// Loads one value for each lane, from places that need not be consecutive.
 floatv gather(__global const float *const values, const intv index) {
 #if LANES == 1
     return values[index];

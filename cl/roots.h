@@ -1,6 +1,6 @@
 // Square roots and quotients. x86 processors estimate 1/sqrt(x) and 1/x to 12 bits or more in one instruction, which
-// clang offers in OpenCL C too; one Newton step makes float32 of it: a torus is 1.7 times faster for it, a sphere 2.1
-// times, a curve 5 %. Elsewhere, and with -D PORTABLE_ROOTS, OpenCL's own functions serve.
+// clang offers in OpenCL C too; one Newton step brings that to float32's precision. It makes a torus 1.7 times as fast,
+// a sphere 2.1 times, a curve 5 % faster. Elsewhere, and with -D PORTABLE_ROOTS, OpenCL's own functions serve.
 #pragma once
 #include "lanes.h"
 

@@ -1,5 +1,5 @@
 // Sends rays through pixels: L(s) = S + s (E - S), s in [0,1] (Watanabe, Abe, Konno 2015, eq. 19), one in every lane,
-// and ends them where depths hide what lies beyond. Every engine sees the image so.
+// and ends them where depths hide what lies beyond. Every engine sees the image this way.
 //
 // Positions are seen from the eye (world axes, world units); what float32 leaves of a number is its rest (fine.h).
 #pragma once
@@ -58,14 +58,14 @@ typedef struct {
     float softening2;             // squared softening radius of what the rays pass
 } Screen;
 
-// Pixels beside the image take the depth of the nearest one in it.
+// Returns the depths of pixels; those beside the image take the depth of the nearest one in it.
 floatv depth_of_pixel(const Screen *const screen, const uintv column, const uintv row) {
     const View *const view = screen->view;
     const uintv inside = min(row, (uintv)(view->height - 1u)) * view->width + min(column, (uintv)(view->width - 1u));
     return gather(screen->depths, as_intv(inside));
 }
 
-// Where the depth of a pixel ends its ray (Abe, Watanabe 2010, eq. 13, 14): depths begin at the eye, s at the
+// Returns where the depth of a pixel ends its ray (Abe, Watanabe 2010, eq. 13, 14): depths begin at the eye, s at the
 // projection plane.
 INLINE floatv end_by_depth(const View *const view, const Ray *const ray, const floatv pixel_depth) {
     const finev depth = to_finev(pixel_depth);
@@ -82,7 +82,7 @@ INLINE floatv end_by_depth(const View *const view, const Ray *const ray, const f
     return clamp(s, 0.0f, 1.0f);
 }
 
-// The rays through the centres of pixels, whatever hides their light.
+// Returns the rays through the centres of pixels, whatever hides their light.
 INLINE Ray open_ray(const Screen *const screen, const uintv column, const uintv row) {
     const View *const view = screen->view;
     const fine3v first = fine3(view->first_pixel, view->first_pixel_rest);
@@ -95,7 +95,7 @@ INLINE Ray open_ray(const Screen *const screen, const uintv column, const uintv 
     return make_ray(origin, origin, stretch, splat(view->ray_length), screen->softening2);
 }
 
-// The rays through the centres of pixels.
+// Returns the rays through the centres of pixels.
 INLINE Ray ray_through(const Screen *const screen, const uintv column, const uintv row) {
     Ray ray = open_ray(screen, column, row);
 #ifdef DEPTH
@@ -104,8 +104,8 @@ INLINE Ray ray_through(const Screen *const screen, const uintv column, const uin
     return ray;
 }
 
-// The rays of LANES consecutive pixels from this index on, row by row from the top left. Lanes beyond a row's end wrap
-// round to the next one.
+// Returns the rays of LANES consecutive pixels from this index on, row by row from the top left. Lanes beyond a row's
+// end wrap round to the next one.
 INLINE Ray pixel_ray(const Screen *const screen, const uint first) {
     const View *const view = screen->view;
     const uint first_row = first / view->width;
@@ -125,7 +125,7 @@ INLINE Ray pixel_ray(const Screen *const screen, const uint first) {
     return ray;
 }
 
-// L(s) - M, M given in two parts. Panels that meet in s meet here too: s is not rounded again.
+// Returns L(s) - M, with M given in two parts. Panels that meet in s meet here too: s is not rounded again.
 INLINE fine3v fine_between(const Ray *const ray, const floatv s, const float4 m, const float4 m_rest) {
     const fine3v from_m = fine_subtract3(ray->fine_origin, fine3(m, m_rest));
     return fine_fma3(ray->fine_toward, to_finev(s) * to_finev(ray->stretch), from_m);

@@ -12,13 +12,13 @@ use glam::DVec3;
 
 const FRAMES: u32 = 24;
 
-/// 0 before `from`, 1 after `to`, smooth between.
+/// Rises from 0 before `from` to 1 after `to`, smoothly.
 fn ramp(time: f64, from: f64, to: f64) -> f64 {
     let x = ((time - from) / (to - from)).clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)
 }
 
-/// The scene at a time from 0 to 1.
+/// Returns the scene at a time from 0 to 1.
 fn scene_at(time: f64) -> Scene {
     let mut camera = Camera::new(DVec3::new(0.6, -5.0, 1.2), DVec3::new(0.6, 0.0, 0.0));
     camera.near = 3.5;

@@ -1,6 +1,6 @@
 //! Depth from a host: two tetrahedra, ray-cast here as a game engine would draw them, hide a beam (Abe, Watanabe 2010,
-//! figures 15-18). Draws `hidden-surfaces.png` into the folder given, and `hidden-surfaces-depth.exr`, which a scene file
-//! may name.
+//! figures 15-18). Draws `hidden-surfaces.png` into the folder given, and `hidden-surfaces-depth.exr`, which a scene
+//! file may name.
 //!
 //! `cargo run --release --example hidden_surfaces -- FOLDER`
 

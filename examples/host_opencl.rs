@@ -31,7 +31,7 @@ const SIZE: ImageSize = ImageSize {
 fn main() -> Result<(), Box<dyn error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_default());
 
-    // What a host has anyway.
+    // What every host has anyway.
     let device = get_all_devices(CL_DEVICE_TYPE_ALL)?
         .into_iter()
         .next()
@@ -42,8 +42,8 @@ fn main() -> Result<(), Box<dyn error::Error>> {
     let queue = unsafe { CommandQueue::create(&context, device, 0) }?;
     let image = host_image(&context)?;
 
-    // Made once: it keeps kernels and buffers from frame to frame, and a reference to context and queue. Hosts in C pass
-    // their handles to `Renderer::on_raw_host`.
+    // Made once: the renderer keeps kernels and buffers from frame to frame, and a reference to context and queue.
+    // Hosts in C pass their handles to `Renderer::on_raw_host`.
     let mut renderer = Renderer::on_host(&context, &queue)?;
     let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
     scene.image = SIZE;
@@ -57,10 +57,9 @@ fn main() -> Result<(), Box<dyn error::Error>> {
             profile: Profile::InverseSquare,
             color: DVec3::new(1.0, 0.5, 0.15),
             ..Torus::new(0.7 + 0.15 * f64::from(step))
-        }]
-        .into();
-        // The call returns at once. The frame begins when `wait_list` and what is on the queue before it are over; what the
-        // host puts on the queue after it finds the image drawn.
+        }];
+        // The call returns at once. The frame begins when `wait_list` and what is on the queue before it are over; what
+        // the host puts on the queue afterwards finds the image drawn.
         // SAFETY: the image is alive, and nothing else uses it now.
         let drawn = unsafe { renderer.enqueue(&scene, (&image).into(), &[]) }?;
         // Other queues wait for the event; so may the host.
@@ -74,7 +73,7 @@ fn main() -> Result<(), Box<dyn error::Error>> {
     Ok(())
 }
 
-/// Linear radiance: four channels of float32. Half floats (`CL_HALF_FLOAT`) would do, too.
+/// Makes an image for linear radiance: four channels of float32. Half floats (`CL_HALF_FLOAT`) would do, too.
 fn host_image(context: &Context) -> Result<Image, Box<dyn error::Error>> {
     let format = cl_image_format {
         image_channel_order: CL_RGBA,
@@ -109,14 +108,14 @@ fn read(
     Ok(())
 }
 
-/// OpenGL. The host makes its context for the GL context's device, with the properties `CL_GL_CONTEXT_KHR` and
-/// `CL_GLX_DISPLAY_KHR`, `CL_WGL_HDC_KHR` or `CL_EGL_DISPLAY_KHR`, and the renderer on it, as above. `texture` is what
-/// `clCreateFromGLTexture(context, CL_MEM_WRITE_ONLY, GL_TEXTURE_2D, 0, name)` made, once, of a texture of type
-/// `GL_RGBA32F` or `GL_RGBA16F` and of the scene's size.
+/// Draws into a texture of OpenGL. The host makes its context for the GL context's device, with the properties
+/// `CL_GL_CONTEXT_KHR` and `CL_GLX_DISPLAY_KHR`, `CL_WGL_HDC_KHR` or `CL_EGL_DISPLAY_KHR`, and the renderer on it, as
+/// above. `texture` is what `clCreateFromGLTexture(context, CL_MEM_WRITE_ONLY, GL_TEXTURE_2D, 0, name)` made, once, of
+/// a texture of type `GL_RGBA32F` or `GL_RGBA16F` and of the scene's size.
 ///
 /// # Safety
-/// `texture` is alive, and the queue in order. GL is done with it (`glFinish`, or a fence that was waited for), and leaves it alone until the
-/// event that is returned is over.
+/// `texture` is alive, and the queue is in order. GL has finished with it (`glFinish`, or a fence that was waited for)
+/// and does not touch it until the returned event is over.
 pub unsafe fn draw_into_gl_texture(
     renderer: &mut Renderer,
     queue: &CommandQueue,
@@ -127,7 +126,7 @@ pub unsafe fn draw_into_gl_texture(
     // SAFETY: the caller's promise, three times.
     unsafe {
         queue.enqueue_acquire_gl_objects(&textures, &[])?;
-        // In order: what comes on the queue later waits for the frame. Also after an error the texture goes back.
+        // In order: what comes on the queue later waits for the frame. After an error, too, the texture goes back.
         let drawn = renderer.enqueue(scene, HostTarget::Image(texture), &[]);
         let released = queue.enqueue_release_gl_objects(&textures, &[])?;
         queue.flush()?; // or GL may wait forever
@@ -136,14 +135,15 @@ pub unsafe fn draw_into_gl_texture(
     }
 }
 
-/// Vulkan, with `cl_khr_external_memory` and `cl_khr_semaphore`. `image` is what `clCreateImageWithProperties` made, once,
-/// of the memory that `vkGetMemoryFdKHR` exported (property `CL_EXTERNAL_MEMORY_HANDLE_OPAQUE_FD_KHR`; format
-/// `VK_FORMAT_R32G32B32A32_SFLOAT` or `VK_FORMAT_R16G16B16A16_SFLOAT`); `vulkan_is_done` and `opencl_is_done` are
-/// `VkSemaphore`s, imported by `clCreateSemaphoreWithPropertiesKHR`.
+/// Draws into an image of Vulkan, with `cl_khr_external_memory` and `cl_khr_semaphore`. `image` is what
+/// `clCreateImageWithProperties` made, once, of the memory that `vkGetMemoryFdKHR` exported (property
+/// `CL_EXTERNAL_MEMORY_HANDLE_OPAQUE_FD_KHR`; format `VK_FORMAT_R32G32B32A32_SFLOAT` or
+/// `VK_FORMAT_R16G16B16A16_SFLOAT`); `vulkan_is_done` and `opencl_is_done` are `VkSemaphore`s, imported by
+/// `clCreateSemaphoreWithPropertiesKHR`.
 ///
 /// # Safety
-/// All are alive, and the queue in order. Vulkan signals the first when it is done with the image, and leaves it alone until the second is
-/// signalled.
+/// All are alive, and the queue is in order. Vulkan signals the first semaphore when it has finished with the image,
+/// and does not touch the image until the second is signalled.
 pub unsafe fn draw_into_vulkan_image(
     renderer: &mut Renderer,
     queue: &CommandQueue,
@@ -156,7 +156,7 @@ pub unsafe fn draw_into_vulkan_image(
     unsafe {
         queue.enqueue_wait_semaphores_khr(&[vulkan_is_done], ptr::null(), &[])?;
         queue.enqueue_acquire_external_mem_objects_khr(&images, &[])?;
-        // In order: what comes on the queue later waits for the frame. Also after an error Vulkan gets its image back.
+        // In order: what comes on the queue later waits for the frame. After an error, too, Vulkan gets its image back.
         let drawn = renderer.enqueue(scene, HostTarget::Image(image), &[]);
         queue.enqueue_release_external_mem_objects_khr(&images, &[])?;
         let done = queue.enqueue_signal_semaphores_khr(&[opencl_is_done], ptr::null(), &[])?;

@@ -1,5 +1,5 @@
-//! One picture by all OpenCL devices at once: each draws some of its rows, more from frame to frame if it is faster than
-//! the others. Writes `curve.png` into the folder given, and says who drew which rows.
+//! One picture by all OpenCL devices at once: each draws some of its rows, more from frame to frame if it is faster
+//! than the others. Writes `curve.png` into the folder given, and says which device drew which rows.
 //!
 //! `cargo run --release --example several_devices -- FOLDER`
 

@@ -82,7 +82,7 @@ pub enum Error {
         source: Option<Cause>,
     },
 
-    /// Something of a host's OpenCL does not fit. Nothing was enqueued.
+    /// An OpenCL object that a host gave does not fit. Nothing was enqueued.
     #[error("the host's {object}: {reason}")]
     #[non_exhaustive]
     Host {
@@ -149,7 +149,7 @@ pub enum ErrorKind {
 }
 
 impl ErrorKind {
-    /// The kind's name for other languages and for logs. It never changes.
+    /// Returns the kind's name for other languages and for logs. It never changes.
     #[must_use]
     pub fn code(self) -> &'static str {
         match self {
@@ -170,7 +170,7 @@ impl ErrorKind {
 }
 
 impl Error {
-    /// What kind of thing went wrong.
+    /// Returns what kind of thing went wrong.
     #[must_use]
     pub fn kind(&self) -> ErrorKind {
         match self {
@@ -189,13 +189,13 @@ impl Error {
         }
     }
 
-    /// The stable name of its kind, see [`ErrorKind::code`].
+    /// Returns the stable name of its kind, see [`ErrorKind::code`].
     #[must_use]
     pub fn code(&self) -> &'static str {
         self.kind().code()
     }
 
-    /// An input file that cannot be read, for a reason of our own.
+    /// Makes the error of an input file that cannot be read, for a reason of our own.
     pub fn input(path: impl Into<PathBuf>, reason: impl Into<String>) -> Self {
         Self::Input {
             path: path.into(),
@@ -204,7 +204,7 @@ impl Error {
         }
     }
 
-    /// An output that cannot be written, for a reason of our own.
+    /// Makes the error of an output that cannot be written, for a reason of our own.
     pub fn output(path: impl Into<PathBuf>, reason: impl Into<String>) -> Self {
         Self::Output {
             path: path.into(),
@@ -241,7 +241,7 @@ pub struct SceneError {
 }
 
 impl SceneError {
-    /// A fault of a value in a scene that may not come from a file.
+    /// Makes the fault of a value in a scene that may not come from a file.
     pub(crate) fn value(key: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
             path: None,
@@ -276,7 +276,7 @@ impl From<SceneError> for Error {
     }
 }
 
-/// The compiler's log, indented below the message; a hint where the driver gave none.
+/// Returns the compiler's log, indented below the message; a hint where the driver gave none.
 fn log_lines(log: &str) -> String {
     let log = log.trim();
     if log.is_empty() {

@@ -53,14 +53,15 @@ pub unsafe fn with_compiler_options(options: &RendererOptions, more: &str) -> Re
     }
 }
 
-/// Integrates by this rule, whatever the tolerance; nothing happens on several devices and on the reference.
+/// Makes a renderer integrate by this rule, whatever the tolerance; does nothing on several devices and on the
+/// reference.
 pub fn set_rule(renderer: &mut Renderer, rule: Rule) {
     if let Some(wave) = renderer.wave() {
         wave.set_rule(Some(rule));
     }
 }
 
-/// The resolved text of a file of `cl/`, with the kinds of source that are named.
+/// Returns the resolved text of a file of `cl/`, with the kinds of source that are named.
 #[must_use]
 pub fn resolve(file: &str, kinds: &[&str]) -> String {
     wave::resolve(file, &present(kinds))
@@ -87,7 +88,7 @@ pub fn build_text(
     Program::build(compute, text, &definitions, options)
 }
 
-/// Runs a kernel over `items` work-items, in groups of `group`, and waits for it: how long the device worked.
+/// Runs a kernel over `items` work-items, in groups of `group`, waits for it, and returns how long the device worked.
 ///
 /// Whoever runs one promises that it stays within its memory:
 ///
@@ -155,8 +156,8 @@ pub fn draw_wave(
     Ok(wave.cost())
 }
 
-/// Runs a kernel of another engine over all pixels of a film, a work-item for `lanes` of them, and waits for it. The film's
-/// parameters have the names of `cl/film.h`.
+/// Runs a kernel of another engine over all pixels of a film, a work-item for `lanes` of them, and waits for it. The
+/// film's parameters have the names of `cl/film.h`.
 ///
 /// ```
 /// use energywave::internals::{Compute, Film, Program, run_on_film};

@@ -1,11 +1,11 @@
-//! The host's memory, where the system tells (Linux).
+//! The host's memory, where the system reports it (Linux).
 
-/// Physical memory in bytes.
+/// Returns the physical memory in bytes.
 pub(crate) fn total_bytes() -> Option<u64> {
     entry("MemTotal:")
 }
 
-/// Memory that can be taken without swapping, in bytes.
+/// Returns the memory that can be taken without swapping, in bytes.
 pub(crate) fn available_bytes() -> Option<u64> {
     entry("MemAvailable:")
 }

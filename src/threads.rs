@@ -18,7 +18,7 @@ pub(crate) fn for_each_chunk<T: Send>(
         .for_each(|(index, chunk)| work(index, chunk));
 }
 
-/// Finds something among the numbers, any if there are several.
+/// Finds a number for which `work` finds something; any if there are several.
 pub(crate) fn find_any<T: Send>(
     numbers: &[usize],
     find: impl Fn(usize) -> Option<T> + Send + Sync,

@@ -43,7 +43,7 @@ pub struct KnownRay {
     pub simpson_200: Option<f64>,
 }
 
-/// A ray as files have it: past a whole scene, or past one source of coefficient 1.
+/// A ray as a file describes it: past a whole scene, or past one source of coefficient 1.
 #[derive(Deserialize)]
 struct RayRecord {
     start: DVec3,
@@ -106,7 +106,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Whether the value is within the limit; NaN is not.
+    /// Returns whether the value is within the limit; NaN is not.
     pub fn passes(&self) -> bool {
         self.relative_error <= self.limit
     }
@@ -165,7 +165,7 @@ impl RayRecord {
         })
     }
 
-    /// The scene of one source; `None` for a kind that this version does not draw.
+    /// Returns the scene of one source; `None` for a kind that this version does not draw.
     fn scene_of(&self, kind: &str) -> std::result::Result<Option<Scene>, String> {
         let (Some(alpha), Some(beta)) = (self.alpha, self.beta) else {
             return Err("alpha or beta is missing".to_owned());
@@ -213,7 +213,7 @@ impl RayRecord {
     }
 }
 
-/// A scene as in a JSON scene file, of which the camera plays no part.
+/// Reads a scene as in a JSON scene file, of which the camera plays no part.
 fn whole_scene(mut scene: serde_json::Value) -> std::result::Result<Scene, String> {
     if let Some(tables) = scene.as_object_mut()
         && !tables.contains_key("camera")
@@ -242,7 +242,7 @@ impl KnownRay {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// What a method should give, and the largest relative error allowed; `None` if that is not known.
+    /// Returns what a method should give, and the largest relative error allowed; `None` if that is not known.
     fn expected(&self, method: Method) -> Option<(f64, f64)> {
         match method {
             Method::Exact { tolerance, .. } => Some((self.exact, tolerance)),
@@ -292,7 +292,7 @@ pub fn verify(
     Ok(rows)
 }
 
-/// 0 where both are 0.
+/// Returns the relative error, 0 where both are 0.
 fn relative_error(value: f64, expected: f64) -> f64 {
     if value == expected {
         return 0.0;

@@ -1,6 +1,6 @@
 // Radiance of a ray: the sum of emission times integral over the sources (Watanabe, Abe, Konno 2015, eq. 18, 20). The
-// host chooses the method, with -D EXACT the integrals themselves, else the Simpson sums of the paper, and the kinds of
-// source that a scene has: what it has not costs it neither compiling nor registers.
+// host chooses the method (with -D EXACT the integrals themselves, else the paper's Simpson sums) and the kinds of
+// source that a scene has; other kinds cost neither compile time nor registers.
 #pragma once
 #include "../view.h"
 #include "kinds.h"
@@ -29,7 +29,7 @@ KINDS(EMISSION_OF)
         radiance = fma3(uniform3(kind##_emission(sources, i)), integral, radiance);                                    \
     }
 
-// Linear RGB of the sources that a launch names, a ray in every lane.
+// Returns the linear RGB of the sources that a launch names, a ray in every lane.
 INLINE float3v radiance_along(const Ray *const ray, const Sources *const sources, const Quadrature *const quadrature,
                               const Launch *const launch) {
     float3v radiance = uniform3((float4)(0.0f));

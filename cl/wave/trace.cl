@@ -3,7 +3,7 @@
 #include "../view.h"
 #include "radiance.h"
 
-// A vector and, four values on, its rest.
+// Loads a vector and, four values on, its rest.
 fine3v gather_fine3(__global const float *const values, const intv at) {
     const fine3v r = {to_finev(gather(values, at)) + to_finev(gather(values, at + 4)),
                       to_finev(gather(values, at + 1)) + to_finev(gather(values, at + 5)),
@@ -11,7 +11,7 @@ fine3v gather_fine3(__global const float *const values, const intv at) {
     return r;
 }
 
-// The rays first .. first + count of a list; lanes beyond the end repeat the last one.
+// Loads the rays at these places of a list; lanes beyond the end repeat the last one.
 Ray listed_ray(__global const RayRecord *const rays, const uintv index, const float softening2) {
     __global const float *const values = (__global const float *)rays;
     const intv at = as_intv(index) * (int)(sizeof(RayRecord) / sizeof(float));

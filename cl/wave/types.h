@@ -1,5 +1,5 @@
-// The structs of the wave that cross from the host to the device and are not a kind's own; those stand in the kinds'
-// headers. src/pack/layout.rs mirrors them.
+// The structs of the wave that cross from the host to the device and are not a kind's own; those are in the kinds'
+// headers. src/wave/pack/layout.rs mirrors them.
 //
 // Positions are seen from the eye (world axes, world units): float32 then resolves best where the rays are. What
 // float32 leaves of a number stands in a field named `rest` (fine.h).

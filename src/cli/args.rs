@@ -114,8 +114,8 @@ pub struct CompareArguments {
 
 #[derive(Debug, Args)]
 pub struct DeviceArgument {
-    /// Index, part of a name, gpu, cpu or reference; several, such as 0,1 or gpu,cpu, share each frame; all: every OpenCL
-    /// device [env: ENERGYWAVE_DEVICE] [default: best GPU, else CPU, else reference]
+    /// Index, part of a name, gpu, cpu or reference; several, such as 0,1 or gpu,cpu, share each frame; all: every
+    /// OpenCL device [env: ENERGYWAVE_DEVICE] [default: best GPU, else CPU, else reference]
     #[arg(long)]
     pub device: Option<String>,
     /// Draw also on a device that computes wrong
@@ -124,7 +124,7 @@ pub struct DeviceArgument {
 }
 
 impl DeviceArgument {
-    /// What was typed, as the library has it.
+    /// Returns what was typed as options of the library.
     pub fn options(&self) -> RendererOptions {
         let mut options = RendererOptions::default();
         options.skips_self_test = self.no_self_test;
@@ -196,7 +196,7 @@ pub enum MethodName {
 }
 
 impl Overrides {
-    /// Whether nothing was typed.
+    /// Returns whether nothing was typed.
     pub fn is_empty(&self) -> bool {
         self.size.is_none()
             && self.method.is_none()
@@ -236,7 +236,7 @@ impl Overrides {
         let is_simpson = match self.method {
             Some(MethodName::Simpson) => true,
             Some(MethodName::Exact) => false,
-            // Who names divisions wants them; who names a tolerance wants that met.
+            // Naming divisions asks for Simpson's rule; naming a tolerance asks for it to be met.
             None if asks_simpson != asks_exact => asks_simpson,
             None => matches!(of_scene, Method::Simpson { .. }),
         };
@@ -261,7 +261,7 @@ impl Overrides {
         })
     }
 
-    /// The image of `--depth`, for an image of this size.
+    /// Opens the image of `--depth`, for an image of this size.
     fn open_depth(&self, file: &Path, image: ImageSize) -> Result<DepthImage, Error> {
         let along = match self.depth_along {
             Some(DepthAlongName::Axis) => DepthAlong::Axis,

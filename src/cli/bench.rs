@@ -53,7 +53,7 @@ struct BeamCell {
     paper_single_threaded_fps: Option<f64>,
 }
 
-/// A scene.
+/// The speed of a scene.
 #[derive(Serialize)]
 struct SceneSpeed {
     scene: String,
@@ -197,7 +197,7 @@ fn print_beam_cell(cell: &BeamCell, is_first: bool) -> Outcome {
     ))
 }
 
-/// One row of the text table; a cell takes a second, so that each is printed at once.
+/// Prints one row of the text table. A cell takes a second, so each is printed at once.
 fn print_cell(cell: &Cell, is_first: bool) -> Outcome {
     if is_first {
         print(
@@ -269,7 +269,7 @@ fn prepare(arguments: &BenchArguments) -> Result<(Vec<Device>, Renderer), super:
     Ok((devices, renderer))
 }
 
-/// Those of all devices.
+/// Returns the names of all devices.
 fn names(devices: &[Device]) -> String {
     let names: Vec<&str> = devices.iter().map(|device| device.name.as_str()).collect();
     names.join(" + ")

@@ -69,7 +69,7 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
     print(&table(&rows))
 }
 
-/// Relative errors of the pixels against the reference, and frames a second.
+/// Lists the relative errors of the pixels against the reference, and frames a second.
 fn table(rows: &[Row]) -> String {
     let mut text = format!(
         "{:<14} {:>9} {:>9} {:>9} {:>9}\n",

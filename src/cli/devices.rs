@@ -20,7 +20,7 @@ pub fn run(arguments: &DevicesArguments) -> Outcome {
     Ok(())
 }
 
-/// One row for each device.
+/// Returns a text with one row for each device.
 fn table(devices: &[Device]) -> String {
     let mut text = format!(
         "{:>5} {:<11} {:>5} {:>10} {:>5}  name, platform, version, driver\n",

@@ -50,7 +50,7 @@ pub fn run() -> ExitCode {
     let (message, code) = match failure {
         Failure::Error(error) => (format!("{error}{}", hint(&error)), exit_code(&error)),
         Failure::Verification(message) => (message, 6),
-        // The reader of a pipe may leave early; that is no failure of ours.
+        // The reader of a pipe may leave early; that is not our failure.
         Failure::Stdout(error) if error.kind() == io::ErrorKind::BrokenPipe => {
             return ExitCode::SUCCESS;
         }
@@ -61,7 +61,7 @@ pub fn run() -> ExitCode {
     ExitCode::from(code)
 }
 
-/// The exit codes of `--help`.
+/// Returns the exit code of an error, one of those that `--help` lists.
 fn exit_code(error: &Error) -> u8 {
     match error.kind() {
         ErrorKind::Unsupported | ErrorKind::OutputFormat => 2,
@@ -73,7 +73,7 @@ fn exit_code(error: &Error) -> u8 {
     }
 }
 
-/// How the command line does what the library advises.
+/// Says how the command line does what the library advises.
 fn hint(error: &Error) -> &'static str {
     match error.kind() {
         ErrorKind::SelfTest => " with --device, or insist on this one with --no-self-test",
@@ -82,7 +82,8 @@ fn hint(error: &Error) -> &'static str {
     }
 }
 
-/// The devices of `--device`, else of `ENERGYWAVE_DEVICE`, else the best; says on standard error which they are.
+/// Chooses the devices of `--device`, else of `ENERGYWAVE_DEVICE`, else the best, and says on standard error which they
+/// are.
 fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
     let devices = Devices::discover();
     let variable = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_default();
@@ -100,13 +101,13 @@ fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
     Ok(chosen)
 }
 
-/// One line on standard error.
+/// Writes one line to standard error.
 fn note(line: &str) {
     // Nobody is left to tell if standard error is closed.
     let _ = writeln!(io::stderr(), "{line}");
 }
 
-/// Data on standard output.
+/// Writes data to standard output.
 fn print(data: &str) -> Outcome {
     let mut stdout = io::stdout().lock();
     stdout
@@ -115,7 +116,7 @@ fn print(data: &str) -> Outcome {
         .map_err(Failure::Stdout)
 }
 
-/// JSON on standard output.
+/// Writes JSON to standard output.
 fn print_json(data: &impl serde::Serialize) -> Outcome {
     match serde_json::to_string_pretty(data) {
         Ok(text) => print(&format!("{text}\n")),

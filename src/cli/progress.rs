@@ -8,13 +8,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// From now on Ctrl-C asks the work to stop, so that it can tidy up.
+/// Makes Ctrl-C ask the work to stop, so that it can tidy up.
 pub fn catch_interrupts() {
     // Without a handler Ctrl-C still ends the program, at once.
     let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
 }
 
-/// Whether Ctrl-C was pressed.
+/// Returns whether Ctrl-C was pressed.
 pub fn was_interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
@@ -27,7 +27,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A bar that appears after a second, unless `quiet` or no terminal is there (which indicatif sees to).
+    /// Makes a bar that appears after a second, unless `quiet` is set or there is no terminal (indicatif sees to that).
     pub fn new(quiet: bool) -> Self {
         Self {
             begun: Instant::now(),

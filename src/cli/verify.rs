@@ -15,7 +15,7 @@ pub fn run(arguments: &VerifyArguments) -> Outcome {
         None => built_in_rays()?,
     };
     let devices = choose_devices(arguments.device.device.as_deref())?;
-    // It is the longer test itself, and shows every value.
+    // This command is the longer test, and shows every value.
     let mut options = RendererOptions::default();
     options.skips_self_test = true;
     name_unknown_kinds(&rays);
@@ -39,7 +39,7 @@ pub fn run(arguments: &VerifyArguments) -> Outcome {
     judge(&rows)
 }
 
-/// Where there are several, with its index: equal devices have equal names.
+/// Names a device, among several with its index: equal devices have equal names.
 fn name_among(device: &Device, devices: &[Device]) -> String {
     match devices {
         [_] => device.name.clone(),

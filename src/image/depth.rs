@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::ImageSize;
 use crate::error::{Result, SceneError};
 
-/// What a depth is the length of; it begins at the eye.
+/// What a depth is measured along, from the eye.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
@@ -16,12 +16,12 @@ pub enum DepthAlong {
     /// The view ray itself: a distance.
     #[default]
     Ray,
-    /// The ray's part along the direction of view, as depth buffers and most renderers' Z have it.
+    /// The ray's part along the direction of view, as in depth buffers and most renderers' Z.
     Axis,
 }
 
-/// A depth for every pixel, world units, by rows from the top left; infinite where nothing hides the light. Clones share
-/// the values, which never change: a renderer uploads them once.
+/// A depth for every pixel, world units, by rows from the top left; infinite where nothing hides the light. Clones
+/// share the values, which never change: a renderer uploads them once.
 #[derive(Debug, Clone)]
 pub struct DepthImage {
     size: ImageSize,
@@ -30,7 +30,7 @@ pub struct DepthImage {
     file: Option<Arc<PathBuf>>,
 }
 
-/// Images are equal that hide the same, wherever they came from.
+/// Two images are equal if they hide the same, wherever they came from.
 impl PartialEq for DepthImage {
     fn eq(&self, other: &Self) -> bool {
         let is_alike = self.size == other.size && self.along == other.along;
@@ -39,10 +39,11 @@ impl PartialEq for DepthImage {
 }
 
 impl DepthImage {
-    /// Takes `values` as they are.
+    /// Makes a depth image of `values`, without copying them.
     ///
     /// # Errors
-    /// [`Error::Scene`](crate::Error::Scene) if there is not one value for each pixel, or one is not a number or negative.
+    /// [`Error::Scene`](crate::Error::Scene) if there is not one value for each pixel, or one is not a number or
+    /// negative.
     pub fn new(size: ImageSize, along: DepthAlong, values: Vec<f32>) -> Result<Self> {
         let fault = |message: String| Err(SceneError::value("depth", message).into());
         if values.len() != size.pixels() {
@@ -80,37 +81,37 @@ impl DepthImage {
         self
     }
 
-    /// The file that the image was read from, by its full path; `None` for one that was made in code. A scene that is
-    /// written to a file names it.
+    /// Returns the file that the image was read from, by its full path; `None` for one that was made in code. A scene
+    /// that is written to a file names it.
     #[must_use]
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref().map(PathBuf::as_path)
     }
 
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     #[must_use]
     pub fn size(&self) -> ImageSize {
         self.size
     }
 
-    /// What the values are lengths of.
+    /// Returns what the values are measured along.
     #[must_use]
     pub fn along(&self) -> DepthAlong {
         self.along
     }
 
-    /// A depth for every pixel.
+    /// Returns a depth for every pixel.
     #[must_use]
     pub fn as_slice(&self) -> &[f32] {
         &self.values
     }
 
-    /// The values, which never change.
+    /// Returns the values, which never change.
     pub(crate) fn shared_values(&self) -> &Arc<Vec<f32>> {
         &self.values
     }
 
-    /// Whether both share their values.
+    /// Returns whether both share their values.
     pub(crate) fn shares_values(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.values, &other.values)
     }

@@ -14,8 +14,8 @@ use crate::error::{Error, Result};
 use crate::memory;
 
 impl DepthImage {
-    /// Reads an OpenEXR image: its channel Z or depth, else V, Y or R, or the only one there is. Where the data window leaves
-    /// a part of the display window out, nothing hides the light.
+    /// Reads an OpenEXR image: its channel Z or depth, else V, Y or R, or the only one there is. Where the data window
+    /// leaves a part of the display window out, nothing hides the light.
     ///
     /// # Errors
     /// [`Error::Input`] if the file cannot be read, has no such channel, or holds what [`DepthImage::new`] refuses.
@@ -86,7 +86,7 @@ impl DepthImage {
     }
 }
 
-/// A file may claim any size: nothing is allocated for more than an image may have, or the memory holds.
+/// Checks the sizes that a file claims: nothing is allocated beyond what an image may have or the memory holds.
 fn check_claims(meta: &MetaData) -> std::result::Result<(), String> {
     const LIMIT: usize = ImageSize::LIMIT as usize;
     let mut bytes = 0;
@@ -124,7 +124,7 @@ fn check_claims(meta: &MetaData) -> std::result::Result<(), String> {
 
 type FlatLayer = Layer<AnyChannels<FlatSamples>>;
 
-/// The channel that holds depth, with its layer.
+/// Finds the channel that holds depth, with its layer.
 fn depth_channel(
     layers: &[FlatLayer],
 ) -> std::result::Result<(&FlatLayer, &AnyChannel<FlatSamples>), String> {

@@ -1,5 +1,5 @@
-//! Image files: EXR (float32, linear) and PNG (8-bit sRGB), written beside the target and renamed, so that no half-written
-//! file is ever left.
+//! Image files: EXR (float32, linear) and PNG (8-bit sRGB), written beside the target and renamed, so that no
+//! half-written file is ever left.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -129,7 +129,7 @@ impl ImageFile {
     }
 }
 
-/// An encoder wraps the system's error into words about images; the system's own are what the user can act on.
+/// Returns the system's own words, which the user can act on; encoders wrap them in words about images.
 fn reason(error: &ImageError) -> String {
     let mut source: &(dyn std::error::Error + 'static) = error;
     loop {

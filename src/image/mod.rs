@@ -55,19 +55,19 @@ impl RadianceImage {
         Ok(Self { size, data })
     }
 
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     #[must_use]
     pub fn size(&self) -> ImageSize {
         self.size
     }
 
-    /// RGBA values, 4 for every pixel, by rows from the top left.
+    /// Returns the RGBA values, 4 for every pixel, by rows from the top left.
     #[must_use]
     pub fn as_slice(&self) -> &[f32] {
         &self.data
     }
 
-    /// The same values, to be changed.
+    /// Returns the same values, to be changed.
     pub fn as_mut_slice(&mut self) -> &mut [f32] {
         &mut self.data
     }
@@ -83,7 +83,7 @@ impl RadianceImage {
     }
 }
 
-/// Keeps an image from frame to frame; it is made anew if another size is wanted.
+/// Returns the image that is kept from frame to frame, made anew if another size is wanted.
 pub(crate) fn kept_image(
     image: &mut Option<RadianceImage>,
     size: ImageSize,
@@ -103,13 +103,13 @@ pub struct DisplayImage {
 }
 
 impl DisplayImage {
-    /// Width and height in pixels.
+    /// Returns width and height in pixels.
     #[must_use]
     pub fn size(&self) -> ImageSize {
         self.size
     }
 
-    /// RGB bytes, 3 for every pixel.
+    /// Returns the RGB bytes, 3 for every pixel.
     #[must_use]
     pub fn as_slice(&self) -> &[u8] {
         &self.data

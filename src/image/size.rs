@@ -16,7 +16,7 @@ impl ImageSize {
     /// The largest width and the largest height.
     pub const LIMIT: u32 = 16384;
 
-    /// Number of pixels.
+    /// Returns the number of pixels.
     #[must_use]
     pub fn pixels(self) -> usize {
         self.width as usize * self.height as usize

@@ -40,7 +40,8 @@ pub enum ToneMap {
 }
 
 impl RadianceImage {
-    /// Makes the picture for a screen. Dithered, so that wide glows do not band; black stays black and white white.
+    /// Makes the picture for a screen, dithered so that wide glows do not band; black stays black and white stays
+    /// white.
     #[must_use]
     pub fn tone_map(&self, display: &Display) -> DisplayImage {
         let gain = display.exposure.exp2() as f32;
@@ -79,7 +80,7 @@ impl ToneMap {
     }
 }
 
-/// The sRGB transfer function (IEC 61966-2-1), linear `[0,1]` to encoded `[0,1]`.
+/// Encodes a linear value of `[0,1]` by the sRGB transfer function (IEC 61966-2-1).
 fn srgb_encode(linear: f32) -> f32 {
     match linear {
         l if l <= 0.003_130_8 => 12.92 * l,
@@ -88,7 +89,7 @@ fn srgb_encode(linear: f32) -> f32 {
     }
 }
 
-/// Interleaved gradient noise in [0,1) (Jimenez 2014): a dither threshold whose error the eye averages away.
+/// Returns interleaved gradient noise in [0,1) (Jimenez 2014), a dither threshold whose error the eye averages away.
 fn gradient_noise(column: usize, row: usize) -> f32 {
     let phase = 0.067_110_56 * column as f64 + 0.005_837_15 * row as f64;
     ((52.982_918_9 * phase.fract()).fract() as f32).min(0.999)

@@ -1,7 +1,7 @@
 //! PoCL's threads, one to a core.
 
-/// Asks PoCL to keep each of its threads on a core of its own (`POCL_AFFINITY`), unless the user chose. On two cores one
-/// run in four otherwise has both threads on one core for good, and small frames take twice as long.
+/// Asks PoCL to keep each of its threads on a core of its own (`POCL_AFFINITY`), unless the user has chosen. On two
+/// cores one run in four otherwise has both threads on one core for good, and small frames take twice as long.
 ///
 /// # Safety
 /// It changes the environment: no other thread may run yet. Call it first in `main`.
@@ -14,7 +14,8 @@ pub unsafe fn keep_pocl_threads_apart() {
     }
 }
 
-/// PoCL counts cores from 0 and fails on one that the process may not use: so only where they are 0 to some number.
+/// Returns whether the process may use the cores from 0 to some number: PoCL counts them from 0 and fails on one that
+/// it may not use.
 fn may_use_first_cores(status: &str) -> bool {
     let list = status
         .lines()

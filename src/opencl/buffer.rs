@@ -34,7 +34,8 @@ impl<T: Pod> DeviceBuffer<T> {
         Self::with_flags(compute, what, len, CL_MEM_READ_WRITE)
     }
 
-    /// Like [`DeviceBuffer::new`], placed so that mapping it copies nothing where device and host share their memory.
+    /// Allocates as [`DeviceBuffer::new`], placed so that mapping it copies nothing where device and host share their
+    /// memory.
     pub(super) fn image(compute: &Compute, what: &str, len: usize) -> Result<Self> {
         let shared = compute.device.shares_host_memory;
         let place = if shared { CL_MEM_ALLOC_HOST_PTR } else { 0 };
@@ -77,7 +78,7 @@ impl<T: Pod> DeviceBuffer<T> {
         Ok(())
     }
 
-    /// The host's memory as a buffer, for kernels to write.
+    /// Makes a buffer of the host's memory, for kernels to write.
     ///
     /// # Safety
     /// Until the buffer is dropped, and every command that uses it is over, nobody else uses the memory.
@@ -121,12 +122,12 @@ impl<T: Pod> DeviceBuffer<T> {
         })
     }
 
-    /// Number of elements.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Never: a buffer has at least one element.
+    /// Returns false: a buffer has at least one element.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -171,8 +172,8 @@ impl<T: Pod> DeviceBuffer<T> {
         Ok(())
     }
 
-    /// Like [`DeviceBuffer::read`] of so many elements, in rows of `row` values that begin `stride` values apart in `target`;
-    /// what lies between them is left alone.
+    /// Copies as [`DeviceBuffer::read`], this many elements in rows of `row` values that begin `stride` values apart in
+    /// `target`; what lies between them is left alone.
     pub(super) fn read_rows<V: Pod>(
         &self,
         compute: &Compute,

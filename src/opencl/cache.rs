@@ -1,8 +1,8 @@
 //! Built kernels on disk, for drivers that keep none: some compile for seconds at every start.
 //!
-//! An entry is a file `KEY.KIND` in a folder that only the user can write to. Before its body stands a seal, the hash of
-//! all that must fit together; an entry whose seal is another counts as missing, for a driver may take a damaged binary
-//! and compute wrongly.
+//! An entry is a file `KEY.KIND` in a folder that only the user can write to. Its body follows a seal, the hash of
+//! everything that must fit together; an entry with another seal counts as missing, because a driver may accept a
+//! damaged binary and compute wrong results.
 
 use std::fs::{self, DirBuilder, File};
 use std::io::{self, Write};
@@ -33,16 +33,17 @@ const KEEP_THEIR_OWN: [&str; 6] = [
 /// How an entry begins; the last byte is the version of the format.
 const FORMAT: &[u8; 8] = b"ewcache\x01";
 
-/// Entries beyond this size together are removed, those first that were unused for longest. One has 1 to 3 MB.
+/// The size of all entries together; beyond it those that were unused for longest are removed. One has 1 to 3 MB.
 const MOST_BYTES: u64 = 256 << 20;
 
 /// Whether built kernels are kept on disk for the next start: in the folder that the environment variable
-/// `ENERGYWAVE_CACHE_DIR` names, else in `energywave` in the user's folder for caches. A folder that is not the user's own,
-/// or that others can write to, is not used. No fault of folder or files is an error: the kernels are built again.
+/// `ENERGYWAVE_CACHE_DIR` names, else in `energywave` in the user's folder for caches. A folder that is not the user's
+/// own, or that others can write to, is not used. A fault of the folder or its files is no error: the kernels are built
+/// again.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum KernelCache {
-    /// For drivers that are not known to keep a cache of their own, unless the environment variable `ENERGYWAVE_CACHE` is
-    /// `always` or `never`.
+    /// For drivers that are not known to keep a cache of their own, unless the environment variable `ENERGYWAVE_CACHE`
+    /// is `always` or `never`.
     #[default]
     WhereMissing,
     /// For every driver but a simulator's.
@@ -52,7 +53,7 @@ pub enum KernelCache {
 }
 
 impl KernelCache {
-    /// The folder for a device's kernels, if they are to be kept.
+    /// Returns the folder for a device's kernels, if they are to be kept.
     pub(super) fn folder(self, device: &OpenClDevice) -> Option<Folder> {
         let variable = std::env::var(CHOICE_VARIABLE).unwrap_or_default();
         let keeps = self.keeps(&variable, device.platform.trim()) && !device.is_simulator;
@@ -73,7 +74,7 @@ impl KernelCache {
 pub(super) struct Folder(PathBuf);
 
 impl Folder {
-    /// The user's: the one named by the environment, else the usual one.
+    /// Returns the user's folder: the one named by the environment, else the usual one.
     pub(super) fn of_user() -> Option<Self> {
         let named = std::env::var_os(FOLDER_VARIABLE).filter(|name| !name.is_empty());
         let usual = || Some(etcetera::choose_base_strategy().ok()?.cache_dir());
@@ -83,7 +84,7 @@ impl Folder {
             .map(Self)
     }
 
-    /// The body of an entry; `None` if there is none that fits.
+    /// Reads the body of an entry; `None` if there is none that fits.
     pub(super) fn read(&self, key: ProgramKey, kind: &str) -> Option<Vec<u8>> {
         if !is_private(&self.0) {
             return None;
@@ -146,7 +147,7 @@ impl Folder {
     }
 }
 
-/// The hash of all that must fit together in an entry.
+/// Returns the hash of all that must fit together in an entry.
 fn seal(key: ProgramKey, kind: &str, body: &[u8]) -> [u8; 32] {
     let mut hash = Sha256::new();
     hash.update(FORMAT);
@@ -157,7 +158,7 @@ fn seal(key: ProgramKey, kind: &str, body: &[u8]) -> [u8; 32] {
     hash.finalize().into()
 }
 
-/// Whether a file is ours, if only begun: the folder may hold others, which are left alone.
+/// Returns whether a file is ours, if only begun; others in the folder are left alone.
 fn is_entry(name: &[u8]) -> bool {
     name.len() > 64 && name[64] == b'.' && name[..64].iter().all(u8::is_ascii_hexdigit)
 }
@@ -174,7 +175,8 @@ fn create_private(folder: &Path) -> io::Result<()> {
     builder.recursive(true).create(folder)
 }
 
-/// Whether a folder is there, the user's own, and not writable by others: who writes entries runs code here.
+/// Returns whether a folder exists, is the user's own, and is not writable by others: whoever writes entries runs code
+/// here.
 #[cfg(unix)]
 fn is_private(folder: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -197,7 +199,7 @@ mod tests {
 
     const KEY: ProgramKey = ProgramKey([7; 32]);
 
-    /// A folder that is not made yet, in one that is removed with the first value.
+    /// Returns a folder that is not made yet, in one that is removed with the first value.
     fn folder() -> (tempfile::TempDir, Folder) {
         let parent = tempfile::tempdir().unwrap();
         let folder = Folder(parent.path().join("of caches/energywave"));

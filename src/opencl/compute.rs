@@ -34,7 +34,7 @@ impl Compute {
         Self::in_context(Handle::new(Context::new(context, &[])), device)
     }
 
-    /// A queue of our own in a context that has the device.
+    /// Makes a queue of our own in a context that has the device.
     pub(super) fn in_context(context: Handle<Context>, device: &OpenClDevice) -> Result<Self> {
         let name = &device.name;
         // SAFETY: the device belongs to the context, which outlives the queue.
@@ -50,7 +50,7 @@ impl Compute {
         })
     }
 
-    /// Another queue on the same device in the same context.
+    /// Makes another queue on the same device in the same context.
     pub(crate) fn sibling(&self) -> Result<Self> {
         let context = self.context.get();
         // SAFETY: the context is alive, and the reference taken is given back by the handle.
@@ -63,7 +63,7 @@ impl Compute {
         Self::in_context(context, &self.device)
     }
 
-    /// The device's properties.
+    /// Returns the device's properties.
     pub fn device(&self) -> &OpenClDevice {
         &self.device
     }

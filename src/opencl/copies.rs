@@ -7,7 +7,7 @@ use super::failure::failed;
 use super::handle::Handle;
 use crate::error::Result;
 
-/// What is copied must neither change nor be freed before its copy is over.
+/// Copies under way. What is copied must neither change nor be freed before its copy is over.
 #[derive(Debug)]
 pub(super) struct Copies<T>(Vec<(Handle<Event>, T)>);
 
@@ -21,13 +21,13 @@ impl<T> Copies<T> {
         self.0.push((event, data));
     }
 
-    /// Lets go of what is over, without waiting: whether no copy failed.
+    /// Lets go of what is over, without waiting, and returns whether no copy failed.
     pub(super) fn reap(&mut self) -> bool {
         let mut is_well = true;
         self.0.retain(|(event, _)| {
             let is_over = state(event);
             is_well &= is_over.is_ok();
-            // Where the question failed, the copy may go on.
+            // If the driver did not answer, the copy may still be going on.
             matches!(is_over, Ok(false) | Err(Unknown::Asking))
         });
         is_well
@@ -54,7 +54,7 @@ pub(crate) enum Unknown {
     Asking,
 }
 
-/// Whether a command is over.
+/// Returns whether a command is over.
 pub(crate) fn state(event: &Event) -> std::result::Result<bool, Unknown> {
     match event.command_execution_status() {
         Ok(status) if status.0 < CL_COMPLETE => Err(Unknown::Command),
@@ -66,7 +66,7 @@ pub(crate) fn state(event: &Event) -> std::result::Result<bool, Unknown> {
 impl<T> Drop for Copies<T> {
     fn drop(&mut self) {
         for (event, _) in &self.0 {
-            // However it ends: afterwards nobody reads the data.
+            // However the copy ends, nobody reads the data afterwards.
             let _ = event.wait();
         }
     }

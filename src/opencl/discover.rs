@@ -114,13 +114,13 @@ pub fn discover() -> Discovery {
     Discovery { devices, problem }
 }
 
-/// The properties of a device that someone else found; `None` if it cannot render.
+/// Reads the properties of a device that someone else found; `None` if it cannot render.
 pub(super) fn device_of(id: cl_device_id) -> Option<OpenClDevice> {
     let platform = Platform::new(ClDevice::new(id).platform().ok()?);
     inspect(&platform, id)
 }
 
-/// A device with a compiler and all properties readable; others cannot render.
+/// Reads the properties of a device; `None` if it has no compiler or keeps a property to itself: it cannot render.
 fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
     let handle = ClDevice::new(id);
     if !handle.available().ok()? || !handle.compiler_available().ok()? {
@@ -156,7 +156,7 @@ fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
     })
 }
 
-/// The greatest lane width of the kernels that is no wider than the device's vectors.
+/// Returns the greatest lane width of the kernels that is no wider than the device's vectors.
 fn supported_lanes(width: u32) -> u32 {
     match width {
         16.. => 16,
@@ -166,7 +166,7 @@ fn supported_lanes(width: u32) -> u32 {
     }
 }
 
-/// What to install when the loader answers with `code` instead of platforms.
+/// Says what to install when the loader answers with `code` instead of platforms.
 fn missing(code: i32) -> String {
     match code {
         DLOPEN_RUNTIME_LOAD_FAILED => {

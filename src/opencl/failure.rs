@@ -18,7 +18,7 @@ pub(super) fn failed<'a>(
     }
 }
 
-/// A call that would have been wrong and was not made.
+/// Makes the error of a call that would have been wrong and was not made.
 pub(super) fn fault(device: &str, call: &'static str, what: String) -> Error {
     Error::Device {
         device: device.to_owned(),
@@ -29,7 +29,7 @@ pub(super) fn fault(device: &str, call: &'static str, what: String) -> Error {
     }
 }
 
-/// Turns the error code of a refused buffer of so many bytes into an error that says what it was for.
+/// Turns the error code of a buffer of this many bytes that was refused into an error that says what it was for.
 pub(super) fn refused<'a>(
     device: &'a str,
     what: &'a str,
@@ -45,7 +45,7 @@ pub(super) fn refused<'a>(
     }
 }
 
-/// OpenCL's name of an error code, with the number.
+/// Returns OpenCL's name of an error code, with the number.
 pub(super) fn code_name(code: i32) -> String {
     format!("{}, {code}", error_text(code))
 }

@@ -46,7 +46,7 @@ pub enum FilmFormat {
 }
 
 impl FilmFormat {
-    /// What the kernels' compiler is told.
+    /// Returns what the kernels' compiler is told.
     pub fn definitions(self) -> &'static str {
         match self {
             Self::Floats => "",
@@ -64,7 +64,7 @@ enum Target {
     Own,
     /// A buffer of someone else, for all pixels.
     Buffer(cl_mem),
-    /// Likewise, of half floats.
+    /// A buffer of half floats of someone else, for all pixels.
     Halves(cl_mem),
     /// An image of someone else, for all pixels.
     Image {
@@ -99,7 +99,7 @@ unsafe impl Send for Film {}
 const MOST_BYTES: u64 = 1 << 30;
 
 impl Film {
-    /// A film of its own memory, made when it is first needed.
+    /// Makes a film with memory of its own, which is allocated when it is first needed.
     pub fn new() -> Self {
         Self {
             pixels: None,
@@ -111,7 +111,7 @@ impl Film {
         }
     }
 
-    /// A film of its own in another format, for so many pixels.
+    /// Makes a film with memory of its own in another format, for an image of this size.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], [`Error::Device`].
@@ -136,7 +136,7 @@ impl Film {
         })
     }
 
-    /// What kernels that draw into it are built for.
+    /// Returns what kernels that draw into it are built for.
     pub fn format(&self) -> FilmFormat {
         match &self.target {
             Target::Own | Target::Buffer(_) => FilmFormat::Floats,
@@ -148,18 +148,18 @@ impl Film {
         }
     }
 
-    /// From now on light is added to what is there, if `adds`; else the next launches replace it.
+    /// Lets the next launches add light to what is there, if `adds`; else they replace it.
     pub fn add_to_what_is_there(&mut self, adds: bool) {
         self.adds = adds;
     }
 
-    /// Whether another engine will add to what is drawn now: pixels are not finished yet.
+    /// Says whether another engine will add to what is drawn now: then pixels are not finished yet.
     pub fn leave_unfinished(&mut self, is_unfinished: bool) {
         self.is_unfinished = is_unfinished;
     }
 
-    /// Makes sure of a buffer for `pixels` pixels, or for as many as the device's limits allow, a multiple of `grain`: how
-    /// many it is for.
+    /// Makes sure that there is a buffer for `pixels` pixels, or for as many as the device's limits allow, a multiple
+    /// of `grain`, and returns how many it is for.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], [`Error::Device`].
@@ -180,13 +180,13 @@ impl Film {
         Ok(())
     }
 
-    /// The next launches begin at this pixel, which goes to the buffer's first place.
+    /// Lets the next launches begin at this pixel, which goes to the buffer's first place.
     pub fn begin_at(&mut self, pixel: u32) {
         self.origin = pixel;
     }
 
-    /// The arguments of a launch on some pixels of an image of this size: the first and the last launch of an engine on
-    /// them are known.
+    /// Returns the arguments of a launch on some pixels of an image of this size, which may be the first or the last
+    /// launch of an engine on them.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`] if light must be gathered and there is no memory for it; [`Error::Unsupported`] if a film of
@@ -262,7 +262,7 @@ impl Film {
         }
     }
 
-    /// Likewise so many pixels, in rows of `row` values that begin `stride` values apart.
+    /// Copies this many pixels, in rows of `row` values that begin `stride` values apart.
     pub(crate) fn read_rows(
         &self,
         compute: &Compute,
@@ -275,7 +275,7 @@ impl Film {
         buffer.read_rows(compute, pixels, row, target, stride)
     }
 
-    /// A film in someone else's buffer of float32, for all pixels. What is gathered otherwise goes to `self`'s memory.
+    /// Aims the film at someone else's buffer of float32, for all pixels.
     pub(super) fn aim_at_buffer(&mut self, buffer: cl_mem) {
         self.target = Target::Buffer(buffer);
     }
@@ -288,7 +288,7 @@ impl Film {
         self.target = Target::Image { image, has_halves };
     }
 
-    /// Light goes to the film's own buffer again.
+    /// Aims the film at its own buffer again.
     pub(crate) fn aim_at_own(&mut self) {
         self.target = Target::Own;
     }
@@ -328,7 +328,7 @@ impl FilmArguments {
     }
 }
 
-/// Whether an image's channels are half floats or float32; `None`: neither, or not RGBA.
+/// Returns whether an image's channels are half floats or float32; `None`: neither, or not RGBA.
 pub(super) fn halves_of(order: u32, channel_type: u32) -> Option<bool> {
     match (order, channel_type) {
         (CL_RGBA, CL_FLOAT) => Some(false),

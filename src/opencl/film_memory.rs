@@ -21,8 +21,8 @@ impl Film {
         })
     }
 
-    /// Whether the device itself can write these pixels of the caller: its memory is the host's, and they begin as kernels
-    /// want them.
+    /// Returns whether the device itself can write these pixels of the caller: its memory is the host's, and they begin
+    /// as kernels want them.
     pub(crate) fn reaches(compute: &Compute, target: &[Pixel]) -> bool {
         let device = compute.device();
         !target.is_empty()
@@ -69,8 +69,8 @@ impl Deref for MappedFilm<'_> {
 impl Drop for MappedFilm<'_> {
     fn drop(&mut self) {
         let pixels = self.film.pixels.take();
-        // A driver that refuses may have lost the device: the next call on it will say so. If it has not, the next image
-        // needs a buffer of its own, since nothing may be written to one that is mapped.
+        // A driver that refuses may have lost the device: the next call on it will say so. If it has not, the next
+        // image needs a buffer of its own, since nothing may be written to one that is mapped.
         self.film.pixels = pixels.filter(|it| it.unmap(self.compute, self.pointer).is_ok());
     }
 }
@@ -84,7 +84,7 @@ pub(crate) struct FilmInPlace<'a> {
 }
 
 impl FilmInPlace<'_> {
-    /// Lets the host see what the device wrote: only a mapping makes sure of that.
+    /// Lets the host see what the device wrote: only a mapping ensures that.
     pub(crate) fn show_host(&self, pixels: usize) -> Result<()> {
         let buffer = self.film.pixels()?;
         let pointer = buffer.map(self.compute, pixels)?;

@@ -1,6 +1,6 @@
 //! Half floats.
 
-/// A half float (IEEE 754 binary16) as float32.
+/// Returns a half float (IEEE 754 binary16) as float32.
 pub(super) fn half_to_float(bits: u16) -> f32 {
     let (exponent, fraction) = (bits >> 10 & 0x1f, f32::from(bits & 0x3ff) / 1024.0);
     let magnitude = match exponent {

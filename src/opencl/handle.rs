@@ -1,4 +1,4 @@
-//! OpenCL objects whose release may fail in silence: on a lost device it does, and opencl3 then panics.
+//! OpenCL objects whose release may fail silently: on a lost device it does, where opencl3 would panic.
 
 use std::mem::ManuallyDrop;
 use std::ops::{Deref, DerefMut};
@@ -12,8 +12,8 @@ use opencl3::memory::{Buffer, ClMem, Image, release_mem_object};
 use opencl3::program::release_program;
 use opencl3::types::cl_program;
 
-/// An object of opencl3, released as it does but for the panic. What the object owns besides is never freed: nothing, if
-/// a context is made without a list of devices.
+/// An object of opencl3, released as opencl3 does but without the panic. Whatever else the object owns is never freed;
+/// a context that is made without a list of devices owns nothing else.
 #[derive(Debug)]
 pub struct Handle<T: Release>(ManuallyDrop<T>);
 
@@ -74,7 +74,8 @@ macro_rules! released_by {
     ($([$($generic:ident)?] $type:ty: $release:path),* $(,)?) => {$(
         impl$(<$generic>)? Release for $type {
             unsafe fn release(&self) {
-                // SAFETY: the caller owns the reference. A driver that refuses has lost the device: nothing is left to do.
+                // SAFETY: the caller owns the reference. A driver that refuses has lost the device: nothing is left to
+                // do.
                 let _ = unsafe { $release(self.get()) };
             }
         }

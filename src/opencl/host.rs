@@ -1,8 +1,8 @@
 //! Frames for a host that owns its OpenCL: its context, its queue, its buffer or its image.
 //!
 //! Kernels run on a queue of our own in the host's context, tied to the host's at both ends by events. So launches are
-//! timed also where the host's queue has no profiling, a queue out of order needs no barriers, and two markers are all
-//! that is put on the host's queue.
+//! timed even where the host's queue has no profiling, an out-of-order queue needs no barriers, and nothing but two
+//! markers is put on the host's queue.
 
 use std::fmt::Display;
 
@@ -26,15 +26,15 @@ use super::handle::Handle;
 use super::host_image::ImageInPlace;
 use crate::error::{Error, Result};
 
-/// Memory of a host's that a frame is drawn into: linear radiance, RGBA by rows from the top left.
+/// A host's memory that a frame is drawn into: linear radiance, RGBA by rows from the top left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum HostTarget {
-    /// A buffer of at least `16 * width * height` bytes, float32, made with `CL_MEM_READ_WRITE`. A place in a larger buffer
-    /// is a sub-buffer (`clCreateSubBuffer`).
+    /// A buffer of at least `16 * width * height` bytes, float32, made with `CL_MEM_READ_WRITE`. A place in a larger
+    /// buffer is a sub-buffer (`clCreateSubBuffer`).
     Buffer(cl_mem),
     /// A 2D image of the scene's size with channels `CL_RGBA` of type `CL_FLOAT` or `CL_HALF_FLOAT`, which kernels may
-    /// write. Also what `clCreateFromGLTexture` or an extension for external memory makes of a texture.
+    /// write. What `clCreateFromGLTexture` or an extension for external memory makes of a texture will do, too.
     Image(cl_mem),
 }
 
@@ -52,7 +52,7 @@ impl From<&Image> for HostTarget {
 
 const MARKER: &str = "clEnqueueMarkerWithWaitList";
 
-/// Something of the host's that does not fit.
+/// Makes the error of something of the host's that does not fit.
 pub(crate) fn unfit(object: &'static str, reason: impl Display) -> Error {
     Error::Host {
         object,
@@ -60,7 +60,7 @@ pub(crate) fn unfit(object: &'static str, reason: impl Display) -> Error {
     }
 }
 
-/// A call that asks about something of the host's.
+/// Turns the answer to a question about something of the host's into a result.
 fn asked<T>(object: &'static str, answer: std::result::Result<T, ClError>) -> Result<T> {
     answer.map_err(|ClError(code)| {
         let code = super::failure::code_name(code);
@@ -72,9 +72,9 @@ fn asked<T>(object: &'static str, answer: std::result::Result<T, ClError>) -> Re
 #[derive(Debug)]
 pub(crate) struct HostLink {
     queue: Handle<CommandQueue>,
-    /// Which may be a part of a device.
+    /// It may be a part of a device.
     _device: Handle<SubDevice>,
-    /// Commands that nobody waited for: PoCL 3.1 aborts where an event fails that was let go before it was over.
+    /// Commands that nobody waited for: PoCL 3.1 aborts when an event fails that was released before it was over.
     held: Vec<Handle<Event>>,
 }
 
@@ -123,8 +123,8 @@ impl HostLink {
         Ok((Compute::in_context(context, &device)?, link))
     }
 
-    /// Begins a frame of this size: what follows on our queue waits for `wait_list` and for the commands before it on the
-    /// host's queue, and the film goes to the target. Nothing here waits.
+    /// Begins a frame of this size: what follows on our queue waits for `wait_list` and for the commands before it on
+    /// the host's queue, and the film goes to the target. Nothing here waits.
     ///
     /// # Safety
     /// Target and events are alive, and nothing else uses the target until the frame's event is over.
@@ -158,7 +158,8 @@ impl HostLink {
         Ok(HostFrame { memory, in_place })
     }
 
-    /// Ends a frame: what follows on the host's queue waits for it. Gives the event of that, a marker on the host's queue.
+    /// Ends a frame: what follows on the host's queue waits for it. Returns the event of that, a marker on the host's
+    /// queue.
     pub(crate) fn end(
         &mut self,
         compute: &Compute,
@@ -171,7 +172,7 @@ impl HostLink {
             Some(image) => image.unmap(compute, &frame.memory, &mut self.held),
             None => Ok(()),
         };
-        // Also what was launched before a failure draws into the target: what follows on the host's queue waits for it.
+        // What was launched before a failure draws into the target, too: what follows on the host's queue waits for it.
         let ended = self.end_before(compute);
         match drawn.and(unmapped) {
             Ok(()) => ended,
@@ -182,11 +183,11 @@ impl HostLink {
         }
     }
 
-    /// What follows on our queue waits for what is on the host's, and for the list.
+    /// Makes what follows on our queue wait for what is on the host's, and for the list.
     fn begin_after(&mut self, compute: &Compute, wait_list: &[cl_event]) -> Result<()> {
         let name = &compute.device.name;
         let host = &self.queue;
-        // With a list it would wait for that alone, on a queue out of order.
+        // With a list, it would wait for the list alone on an out-of-order queue.
         // SAFETY: nothing is waited for but what is on the queue.
         let begin = unsafe { host.enqueue_marker_with_wait_list(&[]) }
             .map(Handle::new)
@@ -203,7 +204,7 @@ impl HostLink {
         Ok(())
     }
 
-    /// What follows on the host's queue waits for ours: the event of that.
+    /// Makes what follows on the host's queue wait for ours, and returns the event of that.
     fn end_before(&mut self, compute: &Compute) -> Result<Event> {
         let name = &compute.device.name;
         let queue = &compute.queue;
@@ -216,14 +217,14 @@ impl HostLink {
         // SAFETY: the event is alive.
         let end = unsafe { host.enqueue_marker_with_wait_list(&[last.get()]) }
             .map_err(failed(name, MARKER))?;
-        // For who waits on another queue. The host's next flush makes up for one that fails.
+        // For whoever waits on another queue. If it fails, the host's next flush makes up for it.
         let _ = host.flush();
         self.held.push(last);
         Ok(end)
     }
 }
 
-/// The target, retained, if a frame of this size can go there, and whether it has half floats.
+/// Returns the target, retained, if a frame of this size can go there, and whether it has half floats.
 ///
 /// # Safety
 /// The memory object is alive.
@@ -294,7 +295,7 @@ fn check_buffer(buffer: &Image, flags: u64, (width, height): (u32, u32)) -> Resu
         let reason = format!("{bytes} bytes; {width}x{height} float32 RGBA pixels need {needed}");
         return Err(unfit("buffer", reason));
     }
-    // Of a part of a larger buffer, where the part begins.
+    // For a part of a larger buffer, this is where the part begins.
     let pointer = asked("buffer", buffer.host_ptr())? as usize;
     if !pointer.is_multiple_of(16) {
         return Err(unfit("buffer", "its host pointer is no multiple of 16"));
@@ -307,7 +308,7 @@ fn check_buffer(buffer: &Image, flags: u64, (width, height): (u32, u32)) -> Resu
     Ok(())
 }
 
-/// Whether the image has half floats.
+/// Returns whether the image has half floats.
 fn check_image(image: &Image, size: (u32, u32)) -> Result<bool> {
     let width = asked("image", image.width())?;
     let height = asked("image", image.height())?;

@@ -67,7 +67,7 @@ impl ImageInPlace {
         }
     }
 
-    /// Lets light go there.
+    /// Aims the film there.
     pub(super) fn aim(&self, film: &mut Film) {
         match self.has_halves {
             true => film.aim_at_halves(self.buffer.get()),
@@ -86,7 +86,8 @@ impl ImageInPlace {
         seen.and(enqueue_unmap(compute, image.get(), self.pointer, events))
     }
 
-    /// What kernels wrote is certain to be at the host's pointer only once the buffer has been mapped.
+    /// Shows the host what kernels wrote: it is certain to be at the host's pointer only once the buffer has been
+    /// mapped.
     fn show_host(&self, compute: &Compute, events: &mut Vec<Handle<Event>>) -> Result<()> {
         let mut pointer = ptr::null_mut();
         let (buffer, bytes) = (&self.buffer, self.buffer.size().unwrap_or(0));

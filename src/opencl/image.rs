@@ -62,8 +62,8 @@ pub(super) fn read_image(compute: &Compute, image: &Image, pixels: &mut [Pixel])
     Ok(())
 }
 
-/// Maps a whole image for writing by commands that come after this one: where its first row is, and the bytes from there
-/// to the second.
+/// Maps a whole image for writing by commands that come after this one, and returns where its first row is and the
+/// bytes from there to the second.
 pub(super) fn enqueue_map(
     compute: &Compute,
     image: &Image,

@@ -26,7 +26,8 @@ pub(crate) struct RawMemory(pub(super) cl_mem);
 
 impl Argument for RawMemory {
     fn set(&self, kernel: &ClKernel, index: u32) -> std::result::Result<(), ClError> {
-        // SAFETY: the driver checks the index, and that the kernel expects memory; a kernel may get null but not read it.
+        // SAFETY: the driver checks the index, and that the kernel expects memory; a kernel may get null but not read
+        // it.
         unsafe { kernel.set_arg(index, &self.0) }
     }
 }
@@ -90,8 +91,8 @@ impl Kernel {
         }
     }
 
-    /// Sets every argument by its parameter's name and enqueues `items` work-items in groups of `group`; the last group may
-    /// be padded with work-items beyond `items`.
+    /// Sets every argument by its parameter's name and enqueues `items` work-items in groups of `group`; the last group
+    /// may be padded with work-items beyond `items`.
     ///
     /// # Errors
     /// [`crate::Error::Device`] if names and parameters do not match, or the driver refuses.
@@ -133,13 +134,13 @@ impl Kernel {
         .map_err(failed(device, "clEnqueueNDRangeKernel"))
     }
 
-    /// Its parameters' names, in order.
+    /// Returns its parameters' names, in order.
     pub fn parameters(&self) -> &[String] {
         &self.parameters
     }
 }
 
-/// Waits for a launch: how long the device worked on it.
+/// Waits for a launch, and returns how long the device worked on it.
 pub(crate) fn run_time(compute: &Compute, event: &Event) -> Result<Duration> {
     let name = &compute.device.name;
     event.wait().map_err(failed(name, "clWaitForEvents"))?;

@@ -22,7 +22,7 @@ impl ProgramKey {
             &device.name,
             &device.version,
             &device.driver,
-            // Machines that share a folder may give their processors one name though one has wider vectors.
+            // Machines that share a folder may give their processors the same name though one has wider vectors.
             &device.lanes.to_string(),
         ] {
             hash.update((part.len() as u64).to_le_bytes());

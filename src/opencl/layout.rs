@@ -1,6 +1,6 @@
-//! Structs that cross to the device. Each is written twice, here and in OpenCL C, in the same order: sizes and offsets are
-//! asserted at compile time, sizes again beside the struct in `cl/` at every program build, and every field by name in the
-//! tests.
+//! Structs that cross to the device. Each is written twice, here and in OpenCL C, in the same order: sizes and offsets
+//! are asserted at compile time, sizes again beside the struct in `cl/` at every program build, and every field by name
+//! in the tests.
 
 /// Name, size and fields of a struct that crosses to the device.
 #[derive(Debug, Clone, Copy)]

@@ -1,5 +1,5 @@
-//! The OpenCL runtime: finding devices, building programs, memory, launches, and the film that engines draw into. It knows
-//! no scene. The one home of `unsafe`.
+//! The OpenCL runtime: finding devices, building programs, memory, launches, and the film that engines draw into. It
+//! knows no scene, and is the home of `unsafe`.
 #![allow(unsafe_code)] // calls into OpenCL are unsafe by nature; each block says why it is sound
 
 mod affinity;

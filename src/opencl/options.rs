@@ -15,12 +15,12 @@ use crate::error::{Error, Result};
 pub struct RendererOptions {
     /// Rays that a work-item carries side by side: 1, 4, 8 or 16; `None`: what suits the device.
     pub lanes: Option<u32>,
-    /// Work-items that share a tile, no more than 16 divided by the lanes: 1, 2, 4, 8 or 16; `None`: as many on a GPU, 1
-    /// elsewhere.
+    /// Work-items that share a tile, no more than 16 divided by the lanes: 1, 2, 4, 8 or 16; `None`: as many on a GPU,
+    /// 1 elsewhere.
     pub tile_workers: Option<u32>,
     /// Whether the method `exact` counts its samples, for [`FrameCost::samples`](crate::FrameCost::samples).
     pub counts_samples: bool,
-    /// Whether kernels draw without having shown, at their first use on a device, that they compute right.
+    /// Whether kernels may draw without having shown, at their first use on a device, that they compute correctly.
     pub skips_self_test: bool,
     /// Whether what was built is kept on disk for the next start.
     #[cfg(feature = "kernel-cache")]

@@ -35,8 +35,8 @@ pub struct Program {
 }
 
 impl Program {
-    /// Builds a resolved text (see [`super::Sources`]) with definitions such as ` -D NAME=1`, which come before those of
-    /// the options and of the environment.
+    /// Builds a resolved text (see [`super::Sources`]) with definitions such as ` -D NAME=1`, which come before those
+    /// of the options and of the environment.
     ///
     /// # Errors
     /// [`Error::Build`] with the compiler's log, places as `cl/FILE:LINE`.
@@ -95,7 +95,7 @@ impl Program {
         })
     }
 
-    /// Whether its kernels have shown before, on this device, that they compute right.
+    /// Returns whether its kernels have shown before, on this device, that they compute correctly.
     pub(crate) fn was_tested(&self) -> bool {
         self.record.was_tested()
     }
@@ -138,7 +138,7 @@ fn build_for(
     build_program(program.get(), &devices, flags, None, ptr::null_mut())
 }
 
-/// A program that was built before; `None` where the driver refuses it.
+/// Makes a program of a binary that was built before; `None` where the driver refuses it.
 fn from_binary(compute: &Compute, binary: &[u8], flags: &CStr) -> Option<Handle<RawProgram>> {
     let (context, id) = (compute.context.get(), compute.device.handle.id());
     // SAFETY: the device belongs to the context.
@@ -148,7 +148,8 @@ fn from_binary(compute: &Compute, binary: &[u8], flags: &CStr) -> Option<Handle<
     Some(program)
 }
 
-/// What the driver made of a program; `None` in a host's context of several devices, which has several.
+/// Returns what the driver made of a program; `None` in a host's context of several devices, which has several
+/// binaries.
 fn binary_of(program: &RawProgram) -> Option<Vec<u8>> {
     let found = get_program_info(program.get(), CL_PROGRAM_BINARIES).ok()?;
     let mut binaries = Vec::<Vec<u8>>::from(found);

@@ -1,5 +1,5 @@
-//! What is known of a program from earlier starts: its binary, and that its kernels were found right. Without the feature
-//! `kernel-cache` nothing is.
+//! What is known of a program from earlier starts: its binary, and that its kernels passed the self-test. Without the
+//! feature `kernel-cache` nothing is known.
 
 use super::{OpenClDevice, RendererOptions};
 
@@ -9,7 +9,7 @@ mod kept {
     use crate::opencl::cache::Folder;
     use crate::opencl::key::ProgramKey;
 
-    /// The kinds of the cache's entries: the binary, and that the kernels were found right.
+    /// The kinds of the cache's entries: the binary, and that the kernels passed the self-test.
     const BINARY: &str = "bin";
     const TESTED: &str = "tested";
 

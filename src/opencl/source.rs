@@ -41,7 +41,7 @@ impl Sources<'_> {
         text
     }
 
-    /// Likewise for a text that is not in `cl/` but includes files from there.
+    /// Gives the resolved text of a source that is not in `cl/` but includes files from there.
     pub fn resolve_text(&self, name: &str, source: &str) -> String {
         let mut text = String::new();
         self.expand(name, source, &mut HashSet::new(), &mut text);
@@ -101,7 +101,7 @@ fn included_file(line: &str) -> Option<&str> {
     name.split_once('"').map(|(name, _)| name)
 }
 
-/// The path from `cl/` of a file that is included by `cl/...` (or by a text outside, then from `cl/` itself).
+/// Returns the path from `cl/` of a file that is included by `cl/...` (or by a text outside, then from `cl/` itself).
 fn relative_to(includer: &str, included: &str) -> String {
     let inside = includer.strip_prefix("cl/").unwrap_or("");
     let mut parts: Vec<&str> = inside.split('/').collect();
@@ -116,8 +116,8 @@ fn relative_to(includer: &str, included: &str) -> String {
     parts.join("/")
 }
 
-/// The names of a kernel's parameters in a resolved text. `KINDS(SOURCE_PARAMETER)` stands for a list of each kind that the
-/// text defines in `KINDS`, `FILM_PARAMETER` for the film's buffer and its image where there is one.
+/// Returns the names of a kernel's parameters in a resolved text. `KINDS(SOURCE_PARAMETER)` stands for a list of each
+/// kind that the text defines in `KINDS`, `FILM_PARAMETER` for the film's buffer and its image where there is one.
 pub(super) fn parameters(text: &str, kernel: &str, has_image: bool) -> Vec<String> {
     let head = format!("{kernel}(");
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -161,7 +161,7 @@ pub(super) fn parameters(text: &str, kernel: &str, has_image: bool) -> Vec<Strin
     names
 }
 
-/// The kinds of `#define KINDS(X) X(sphere, Sphere, 0) ...`.
+/// Returns the kinds of `#define KINDS(X) X(sphere, Sphere, 0) ...`.
 fn kinds_of(text: &str) -> Vec<&str> {
     let line = text
         .lines()

@@ -24,7 +24,7 @@ pub struct Uploaded<T> {
 }
 
 impl<T: Pod + PartialEq> Uploaded<T> {
-    /// An empty list; `what` names the contents in errors.
+    /// Makes an empty list; `what` names the contents in errors.
     pub fn new(what: &'static str) -> Self {
         Self {
             what,
@@ -67,7 +67,7 @@ impl<T: Pod + PartialEq> Uploaded<T> {
         Ok(())
     }
 
-    /// Likewise, without a look at the data where the caller knows that they are what was uploaded last.
+    /// Uploads `data`, unless the caller knows that they are what was uploaded last.
     ///
     /// # Errors
     /// As [`Uploaded::upload`].
@@ -94,7 +94,7 @@ impl<T: Pod + PartialEq> Uploaded<T> {
         outcome
     }
 
-    /// The buffer's handle; null before the first upload.
+    /// Returns the buffer's handle; null before the first upload.
     pub(super) fn handle(&self) -> cl_mem {
         self.buffer
             .as_ref()
@@ -113,7 +113,7 @@ pub struct UploadedShared<T> {
 }
 
 impl<T: Pod> UploadedShared<T> {
-    /// No values yet; `what` names them in errors.
+    /// Makes a place without values; `what` names them in errors.
     pub(crate) fn new(what: &'static str) -> Self {
         Self {
             what,
@@ -157,7 +157,7 @@ impl<T: Pod> UploadedShared<T> {
         outcome
     }
 
-    /// The values, for kernels; null before the first upload.
+    /// Returns the values, for kernels; null before the first upload.
     pub(crate) fn argument(&self) -> &dyn Argument {
         &self.buffer
     }

@@ -1,5 +1,5 @@
-//! The papers' speed tables (Watanabe, Abe, Konno 2015, Tables 2 and 3; Abe, Watanabe 2010), and the speed of any scene:
-//! whole frames, the image in host memory at the end of each, a new camera for every frame.
+//! The papers' speed tables (Watanabe, Abe, Konno 2015, Tables 2 and 3; Abe, Watanabe 2010), and the speed of any
+//! scene: whole frames, the image in host memory at the end of each, a new camera for every frame.
 
 mod occluders;
 mod table_2010;
@@ -37,7 +37,7 @@ pub enum Table {
 }
 
 impl Table {
-    /// The paper's number of the table.
+    /// Returns the paper's number of the table.
     pub fn number(self) -> u32 {
         match self {
             Self::Torus => 2,
@@ -45,7 +45,7 @@ impl Table {
         }
     }
 
-    /// Name of the field.
+    /// Returns the name of the field.
     pub fn field(self) -> &'static str {
         match self {
             Self::Torus => "torus",
@@ -53,7 +53,8 @@ impl Table {
         }
     }
 
-    /// Frames a second that the paper reports (AMD FirePro D500), rows as [`RESOLUTIONS`], columns as [`DIVISIONS`].
+    /// Returns the frames a second that the paper reports (AMD FirePro D500), rows as [`RESOLUTIONS`], columns as
+    /// [`DIVISIONS`].
     pub fn paper_fps(self) -> [[f64; 3]; 3] {
         match self {
             Self::Torus => [
@@ -69,7 +70,8 @@ impl Table {
         }
     }
 
-    /// A cell's scene: eye 4 from the centre, projection plane at 1 with half-size 0.375, rays of 12, alpha = beta = 0.1.
+    /// Makes a cell's scene: eye 4 from the centre, projection plane at 1 with half-size 0.375, rays of 12, alpha =
+    /// beta = 0.1.
     pub fn scene(self, resolution: u32, divisions: u32) -> Scene {
         let (azimuth, elevation) = (30_f64.to_radians(), 35_f64.to_radians());
         let toward_eye = DVec3::new(
@@ -108,7 +110,8 @@ impl Table {
     }
 }
 
-/// The scene seen from frame `frame` of a turn of [`FRAMES_PER_TURN`] around the target, about the camera's up vector.
+/// Returns the scene seen from frame `frame` of a turn of [`FRAMES_PER_TURN`] around the target, about the camera's up
+/// vector.
 pub fn turned(scene: &Scene, frame: u32) -> Scene {
     let mut turned = scene.clone();
     let camera = &mut turned.camera;
@@ -179,9 +182,9 @@ pub fn measure(renderer: &mut Renderer, scene: &Scene, time: Duration) -> Result
 /// Frames whose cost [`exact_cost`] takes the mean of.
 const COUNTED_FRAMES: u32 = 4;
 
-/// What a frame of the method `exact` costs, by kernels that count their nodes: the mean of four cameras of a turn, so
-/// that scenes compare whatever the device's speed. Closed forms take no nodes; a ray counts the nodes of all rays that
-/// are side by side with it in one vector.
+/// Returns what a frame of the method `exact` costs, by kernels that count their nodes: the mean over four cameras of a
+/// turn, so that scenes can be compared whatever the device's speed. Closed forms take no nodes; a ray counts the nodes
+/// of all rays that are side by side with it in one vector.
 ///
 /// # Errors
 /// As [`Renderer::render`].
@@ -221,8 +224,8 @@ pub struct Accuracy {
     pub fps: f64,
 }
 
-/// Simpson's rule with 64, 128, 200, 256 and 1024 divisions and the method `exact` at 1e-2, 1e-3 and 1e-4 beside `truth`,
-/// the scene's image by [`crate::reference::render`].
+/// Compares Simpson's rule with 64, 128, 200, 256 and 1024 divisions and the method `exact` at 1e-2, 1e-3 and 1e-4 with
+/// `truth`, the scene's image by [`crate::reference::render`].
 ///
 /// # Errors
 /// As [`Renderer::render`].

@@ -18,7 +18,7 @@ const CORNERS: [DVec3; 4] = [
     DVec3::new(-0.471_405, -0.333_333, -0.816_497),
 ];
 
-/// The distance, along each pixel's ray, to the nearer of two tetrahedra; infinite beside them.
+/// Returns the distance, along each pixel's ray, to the nearer of two tetrahedra; infinite beside them.
 ///
 /// # Errors
 /// None for sizes that an image can have.
@@ -46,7 +46,7 @@ pub fn tetrahedra(camera: &Camera, size: ImageSize) -> Result<DepthImage> {
     DepthImage::new(size, DepthAlong::Ray, values)
 }
 
-/// The distance from `origin` to a triangle (Moeller, Trumbore 1997); `None` if the ray misses it.
+/// Returns the distance from `origin` to a triangle (Moeller, Trumbore 1997); `None` if the ray misses it.
 fn distance_to([a, b, c]: &[DVec3; 3], origin: DVec3, direction: DVec3) -> Option<f64> {
     let (ab, ac) = (b - a, c - a);
     let normal = direction.cross(ac);

@@ -40,8 +40,9 @@ pub const TABLE_2010: [Cell2010; 4] = [
 /// Frames a second that the paper reports without a GPU, beside its last cell.
 pub const PAPER_CPU_FPS: f64 = 1.0;
 
-/// An eye that sees the beam straight from the side, through a plane of side 1; rays end 500 from the eye. Its place is not
-/// given in the paper: here both tetrahedra are in view, and the waves of figures 15-18 go from before to behind both.
+/// Returns a camera that sees the beam straight from the side, through a plane of side 1; rays end 500 from the eye.
+/// Its place is not given in the paper: here both tetrahedra are in view, and the waves of figures 15-18 go from before
+/// to behind both.
 pub fn camera_2010() -> Camera {
     let mut camera = Camera::new(DVec3::new(0.0, 0.0, 350.0), DVec3::ZERO);
     camera.up = DVec3::Y;
@@ -51,7 +52,7 @@ pub fn camera_2010() -> Camera {
 }
 
 impl Cell2010 {
-    /// The cell's scene: a = 60, b = 30, the wave between the two tetrahedra of figures 15-18.
+    /// Makes the cell's scene: a = 60, b = 30, the wave between the two tetrahedra of figures 15-18.
     ///
     /// # Errors
     /// As [`tetrahedra`].
@@ -77,7 +78,7 @@ impl Cell2010 {
     }
 }
 
-/// Frames a second of the float64 reference on a single thread: one frame.
+/// Measures the frames a second of the float64 reference on a single thread, by one frame.
 ///
 /// # Errors
 /// As [`reference::render`].

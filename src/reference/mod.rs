@@ -1,7 +1,7 @@
-//! The truth in float64, by another method than the kernels': adaptive quadrature on the pieces between the points where
-//! a ray comes closest to a core. Also the built-in device `reference`, which needs no OpenCL.
+//! The truth in float64, by another method than the kernels': adaptive quadrature on the pieces between the points
+//! where a ray comes closest to a core. Also the built-in device `reference`, which needs no OpenCL.
 //!
-//! [`render_simpson`] is the paper's composite rule in float64, to check the kernels' Simpson.
+//! [`render_simpson`] is the paper's composite rule in float64, to check the kernels' Simpson sums.
 
 mod field;
 mod quadrature;
@@ -84,8 +84,8 @@ fn simpson_nodes(divisions: u32) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// Renders the scene's linear radiance in float64, every integral to [`RELATIVE_ERROR`], whatever the scene's method. Runs
-/// on all cores.
+/// Renders the scene's linear radiance in float64, every integral to [`RELATIVE_ERROR`], whatever the scene's method.
+/// Runs on all cores.
 ///
 /// # Errors
 /// [`Error::Scene`] if the scene is not valid, [`Error::OutOfMemory`] if the image is too large for memory.
@@ -158,7 +158,7 @@ impl Tracer {
         }
     }
 
-    /// Linear RGB of a pixel, counted by rows from the top left.
+    /// Returns the linear RGB of a pixel, counted by rows from the top left.
     pub(crate) fn pixel(&self, scene: &Scene, plane: &ViewPlane, index: usize) -> DVec3 {
         let width = scene.image.width as usize;
         let ray = plane.ray((index % width) as u32, (index / width) as u32);
@@ -168,7 +168,7 @@ impl Tracer {
         self.radiance(&ray, end)
     }
 
-    /// Linear RGB along a ray, over s in `[0,end]`.
+    /// Returns the linear RGB along a ray, over s in `[0,end]`.
     pub(crate) fn radiance(&self, ray: &Ray, end: f64) -> DVec3 {
         let measure = match self.measure {
             Measure::Parameter => 1.0,
@@ -186,7 +186,7 @@ impl Tracer {
         self.sources.iter().map(light).sum()
     }
 
-    /// Pixels that take some tenths of a second, at 50 ns a sample.
+    /// Returns how many pixels take some tenths of a second, at 50 ns a sample.
     fn band_len(&self) -> usize {
         let samples = match self.method {
             Method::Exact { .. } => 500,

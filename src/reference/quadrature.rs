@@ -6,7 +6,8 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Non-negative nodes of the 21-point Kronrod rule on `[-1,1]`, outermost first; odd places are the 10-point Gauss rule's.
+/// Non-negative nodes of the 21-point Kronrod rule on `[-1,1]`, outermost first; odd places are the 10-point Gauss
+/// rule's.
 const NODES: [f64; 11] = [
     0.995_657_163_025_808_1,
     0.973_906_528_517_171_7,
@@ -66,7 +67,7 @@ struct Piece {
 }
 
 impl Piece {
-    /// One Gauss-Kronrod pair on [from, to], with QUADPACK's error estimate.
+    /// Applies one Gauss-Kronrod pair to [from, to], with QUADPACK's error estimate.
     fn new(integrand: &impl Fn(f64) -> f64, from: f64, to: f64) -> Self {
         let middle = 0.5 * (from + to);
         let half = 0.5 * (to - from);
@@ -104,7 +105,7 @@ impl Piece {
         }
     }
 
-    /// Too narrow to halve, or already as good as float64 allows.
+    /// Returns whether it is too narrow to halve, or already as good as float64 allows.
     fn is_final(&self) -> bool {
         self.to - self.from <= 4.0 * f64::EPSILON * self.to.abs().max(self.from.abs())
             || self.error <= 51.0 * f64::EPSILON * self.magnitude
@@ -128,7 +129,7 @@ impl Ord for Piece {
     }
 }
 
-/// Integral of `integrand` over `[0,end]`, begun on the pieces between `breaks` (in any order; those outside are
+/// Integrates `integrand` over `[0,end]`, beginning with the pieces between `breaks` (in any order; those outside are
 /// ignored), to the error `relative` times the integral of the integrand's magnitude.
 pub fn integrate(
     integrand: impl Fn(f64) -> f64,
@@ -177,7 +178,7 @@ pub fn integrate(
 mod tests {
     use super::*;
 
-    /// The integral of a function of which the rule sees 21 samples a piece.
+    /// Returns the integral of a function of which the rule sees 21 samples a piece.
     fn over(integrand: impl Fn(f64) -> f64, breaks: &[f64]) -> f64 {
         integrate(integrand, &mut breaks.to_vec(), 1.0, 1e-12).value
     }

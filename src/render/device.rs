@@ -68,8 +68,8 @@ impl Device {
         Devices::discover().list
     }
 
-    /// Chooses the device that `choice` names: an index, `gpu`, `cpu`, `reference`, or a part of a device's name or platform,
-    /// upper or lower case.
+    /// Chooses the device that `choice` names: an index, `gpu`, `cpu`, `reference`, or a part of a device's name or
+    /// platform, upper or lower case.
     ///
     /// # Errors
     /// [`Error::NoSuchDevice`] if none fits or several do.
@@ -80,8 +80,8 @@ impl Device {
     /// Chooses the best OpenCL device: the GPU with the most compute units, else a CPU.
     ///
     /// # Errors
-    /// [`Error::NoSuchDevice`] if there is none, with what to install. The built-in reference is hundreds of times slower
-    /// than any of them: who wants it asks for [`Device::reference`].
+    /// [`Error::NoSuchDevice`] if there is none, with what to install. The built-in reference is hundreds of times
+    /// slower than any of them: whoever wants it asks for [`Device::reference`].
     pub fn best() -> Result<Self> {
         Devices::discover().best()
     }
@@ -111,19 +111,19 @@ impl Devices {
         Self { list, problem }
     }
 
-    /// All of them, in the order of their indices; the last is the built-in reference.
+    /// Returns all of them, in the order of their indices; the last is the built-in reference.
     #[must_use]
     pub fn as_slice(&self) -> &[Device] {
         &self.list
     }
 
-    /// Why no OpenCL device was found, and what to install; `None` if one was.
+    /// Says why no OpenCL device was found, and what to install; `None` if one was.
     #[must_use]
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
 
-    /// See [`Device::best`].
+    /// Chooses the best OpenCL device, as [`Device::best`] does.
     ///
     /// # Errors
     /// [`Error::NoSuchDevice`] if there is no OpenCL device.
@@ -135,13 +135,13 @@ impl Devices {
         }
     }
 
-    /// Likewise, or the built-in reference where there is no OpenCL device: what the program does.
+    /// Chooses the best OpenCL device, or the built-in reference where there is none, as the program does.
     #[must_use]
     pub fn best_or_reference(&self) -> Device {
         self.list[best_index(&self.list)].clone()
     }
 
-    /// See [`Device::select`].
+    /// Chooses the device that `choice` names, as [`Device::select`] does.
     ///
     /// # Errors
     /// [`Error::NoSuchDevice`] if none fits or several do.
@@ -168,8 +168,8 @@ impl Devices {
         }
     }
 
-    /// Chooses the devices that `choice` names: `all`, every OpenCL device but simulators; or a list of what [`Device::select`]
-    /// takes, with commas between, such as `0,1` or `gpu,cpu`.
+    /// Chooses the devices that `choice` names: `all`, every OpenCL device but simulators; or a list of what
+    /// [`Device::select`] takes, with commas between, such as `0,1` or `gpu,cpu`.
     ///
     /// # Errors
     /// [`Error::NoSuchDevice`] if there is none for a part of the choice, several, or one that is there already.
@@ -197,7 +197,7 @@ impl Devices {
         Ok(devices)
     }
 
-    /// Nothing answers to the choice.
+    /// Makes the error of a choice that nothing answers to.
     fn none(&self, choice: &str) -> Error {
         let problem = match &self.problem {
             Some(problem) => format!(" ({problem})"),
@@ -209,7 +209,7 @@ impl Devices {
         ))
     }
 
-    /// Devices of a type, the best first; a simulator only where there is no real one.
+    /// Returns the devices of a type, the best first; a simulator only where there is no real one.
     fn of_type(&self, device_type: DeviceType) -> Vec<&Device> {
         let mut fitting: Vec<&Device> = self
             .list
@@ -225,7 +225,7 @@ impl Devices {
         fitting
     }
 
-    /// Devices whose name has `word` in it; if there are none, those whose platform or version has.
+    /// Returns the devices whose name has `word` in it; if there are none, those whose platform or version has.
     fn by_name(&self, word: &str) -> Vec<&Device> {
         let fitting = |text: fn(&Device) -> String| -> Vec<&Device> {
             let has_word = |device: &&Device| text(device).to_lowercase().contains(word);
@@ -246,7 +246,7 @@ impl Device {
     }
 }
 
-/// Place of the best GPU, else of the best CPU, else of the reference.
+/// Returns the place of the best GPU, else of the best CPU, else of the reference.
 fn best_index(list: &[Device]) -> usize {
     let rank = |device: &Device| match device.device_type {
         _ if device.is_simulator() => 4,

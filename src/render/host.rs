@@ -1,8 +1,8 @@
 //! Renderers on a host's own context and queue, which draw into its buffer or image.
 //!
-//! Kernels run on a queue of our own in the host's context, tied to the host's at both ends by events. So launches are timed
-//! also where the host's queue has no profiling, a queue out of order needs no barriers, and two markers are all that is put
-//! on the host's queue.
+//! Kernels run on a queue of our own in the host's context, tied to the host's at both ends by events. So launches are
+//! timed even where the host's queue has no profiling, an out-of-order queue needs no barriers, and nothing but two
+//! markers is put on the host's queue.
 #![allow(unsafe_code)] // hosts hand over handles that only they know to be alive
 
 use opencl3::command_queue::CommandQueue;
@@ -28,7 +28,7 @@ impl Renderer {
         unsafe { Self::on_raw_host(context.get(), queue.get(), &RendererOptions::default()) }
     }
 
-    /// Likewise, for handles as C has them.
+    /// Makes a renderer as [`Renderer::on_host`] does, from handles as C has them.
     ///
     /// # Safety
     /// Both are valid handles, which the caller holds a reference to.
@@ -48,21 +48,21 @@ impl Renderer {
         ))))
     }
 
-    /// Enqueues a frame that is drawn into a host's buffer or image, and gives the event of its end, a marker on the
-    /// host's queue. The frame begins after `wait_list` and what is on the host's queue before it; what comes after it on
-    /// an in-order queue waits for it.
+    /// Enqueues a frame that is drawn into a host's buffer or image, and returns the event of its end, a marker on the
+    /// host's queue. The frame begins after `wait_list` and what is on the host's queue before it; what comes after it
+    /// on an in-order queue waits for it.
     ///
     /// The host's queue is flushed, never finished, and nothing here waits for it (but for the compiler, the first time
     /// that a scene needs other kernels): what goes wrong on the device later shows at the event, and at the next call.
     /// Dropping the renderer waits until the device has read what was uploaded.
     ///
     /// # Safety
-    /// Target and events are valid handles, which the caller holds a reference to. Until the event is over, nothing else
-    /// uses the target.
+    /// Target and events are valid handles, which the caller holds a reference to. Until the event is over, nothing
+    /// else uses the target.
     ///
     /// # Errors
-    /// As [`Renderer::render`]; [`Error::Host`](crate::Error::Host) if the renderer was made without a host, or target or
-    /// events do not fit: all that is checked before anything is enqueued.
+    /// As [`Renderer::render`]; [`Error::Host`](crate::Error::Host) if the renderer was made without a host, or target
+    /// or events do not fit: all that is checked before anything is enqueued.
     pub unsafe fn enqueue(
         &mut self,
         scene: &Scene,

@@ -42,8 +42,8 @@ impl Deref for MappedImage<'_> {
     }
 }
 
-/// Renders scenes on a device, or on several at once. Kernels and buffers are kept: frames after the first allocate nothing
-/// on the device and upload only what changed.
+/// Renders scenes on a device, or on several at once. Kernels and buffers are kept: frames after the first allocate
+/// nothing on the device and upload only what changed.
 #[derive(Debug)]
 pub struct Renderer {
     backend: RendererBackend,
@@ -90,8 +90,8 @@ impl Renderer {
     /// compute units beside the others, then by the time that it took in the last ones, so that all are done together.
     /// A device too slow for a row gets one again now and then.
     ///
-    /// Devices of one kind draw the image that one of them draws, bit for bit; others differ within the tolerance. Single
-    /// rays ([`Renderer::integrate`]) go to the first. One device is as by [`Renderer::with_options`].
+    /// Devices of one kind draw the image that one of them draws, bit for bit; others differ within the tolerance.
+    /// Single rays ([`Renderer::integrate`]) go to the first. With one device this is [`Renderer::with_options`].
     ///
     /// # Errors
     /// [`Error::Unsupported`] if there is no device, or the built-in reference is among several; [`Error::Device`].
@@ -116,8 +116,8 @@ impl Renderer {
         }
     }
 
-    /// Returns the rows of the last frame that each device drew, in the order of [`Renderer::on_devices`]; none before the
-    /// first frame, or on one device.
+    /// Returns the rows of the last frame that each device drew, in the order of [`Renderer::on_devices`]; none before
+    /// the first frame, or on one device.
     #[must_use]
     pub fn shares(&self) -> &[Range<u32>] {
         match &self.backend {
@@ -135,7 +135,8 @@ impl Renderer {
         self.render_with_progress(scene, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// Likewise; `progress` hears the finished share of the work, 0 to 1, several times a second, and may stop it.
+    /// Renders as [`Renderer::render`] does; `progress` is told the finished share of the work, 0 to 1, several times a
+    /// second, and may stop it.
     ///
     /// # Errors
     /// As [`Renderer::render`], and [`Error::Interrupted`] if `progress` stopped the work.
@@ -178,16 +179,16 @@ impl Renderer {
         self.draw(scene, all, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// Renders some rows of the scene's image into the caller's memory, such as a part of a larger image: linear RGBA by
-    /// rows from the top left, the first of `rows` at the beginning of `target`, each `stride` values after the one before.
-    /// What lies between the rows, and after the last, is left alone.
+    /// Renders some rows of the scene's image into the caller's memory, such as a part of a larger image: linear RGBA
+    /// by rows from the top left, the first of `rows` at the beginning of `target`, each `stride` values after the one
+    /// before. What lies between the rows, and after the last, is left alone.
     ///
     /// An image that is rendered in parts is, within the scene's tolerance, the one that is rendered whole; bit for bit
     /// where the parts begin at multiples of 256 rows.
     ///
     /// # Errors
-    /// As [`Renderer::render`], and [`Error::Unsupported`] if the image has not those rows, a row of `4 * width` values is
-    /// longer than `stride`, or `target` ends before the last row does.
+    /// As [`Renderer::render`], and [`Error::Unsupported`] if the image does not have those rows, a row of `4 * width`
+    /// values is longer than `stride`, or `target` ends before the last row does.
     pub fn render_rows(
         &mut self,
         scene: &Scene,
@@ -263,8 +264,8 @@ impl Renderer {
         }
     }
 
-    /// Integrates along single rays: linear RGB, over the parameter or the length of each ray as the scene's measure says.
-    /// The scene's camera, image and depth play no part.
+    /// Integrates along single rays: linear RGB, over the parameter or the length of each ray as the scene's measure
+    /// says. The scene's camera, image and depth play no part.
     ///
     /// # Errors
     /// As [`Renderer::render`]; [`Error::Scene`] also for a ray that [`Ray::fault`] refuses.
@@ -328,7 +329,7 @@ impl Renderer {
         }
     }
 
-    /// The engine of the device, if there is one device.
+    /// Returns the engine of the device, if there is one device.
     pub(crate) fn wave(&mut self) -> Option<&mut crate::wave::Wave> {
         match &mut self.backend {
             RendererBackend::OpenCl(renderer) => Some(renderer.wave()),
@@ -360,7 +361,8 @@ fn draw_reference(
     Ok(())
 }
 
-/// The reference's time is all its own; the samples of its adaptive quadrature are not counted.
+/// Returns the cost of a frame on the reference, all of whose time counts as the kernels'; the samples of its adaptive
+/// quadrature are not counted.
 fn reference_cost(scene: &Scene, pixels: usize, time: Duration) -> FrameCost {
     let integrals = pixels as u64 * scene.source_count() as u64;
     let samples = match scene.integration.method {

@@ -20,15 +20,15 @@ pub(crate) struct DeviceRenderer {
     // Dropped in this order: what uses the context before the context.
     wave: Wave,
     film: Film,
-    /// Whose frames are enqueued, if a host's.
+    /// The host whose frames are enqueued, if there is one.
     host: Option<HostLink>,
     /// Whether the device itself writes the caller's memory where it can; else what it wrote is copied there.
     pub(crate) writes_in_place: bool,
     compute: Compute,
 }
 
-/// Rows of an image that are wanted, and where: RGBA by rows that begin `stride` values apart, the first at the beginning
-/// of `target`.
+/// Rows of an image that are wanted, and where: RGBA by rows that begin `stride` values apart, the first at the
+/// beginning of `target`.
 pub(crate) struct Rows<'a> {
     pub rows: Range<u32>,
     pub target: &'a mut [f32],
@@ -68,17 +68,18 @@ impl DeviceRenderer {
         &mut self.wave
     }
 
-    /// What the last frame cost.
+    /// Returns what the last frame cost.
     pub(crate) fn cost(&self) -> FrameCost {
         self.wave.cost()
     }
 
-    /// See [`Wave::grain_rows`].
+    /// Returns what [`Wave::grain_rows`] says.
     pub(crate) fn grain_rows(&mut self, scene: &Scene) -> u32 {
         self.wave.grain_rows(scene)
     }
 
-    /// Renders some rows of a valid scene. Gives the time from the first launch on, unless kernels had to be built.
+    /// Renders some rows of a valid scene, and returns the time from the first launch on unless kernels had to be
+    /// built.
     pub(crate) fn render_rows(
         &mut self,
         scene: &Scene,
@@ -120,7 +121,7 @@ impl DeviceRenderer {
         Ok(is_built.then(|| begun.elapsed()))
     }
 
-    /// Linear RGBA along single rays; light is measured over the parameter s.
+    /// Returns linear RGBA along single rays; light is measured over the parameter s.
     pub(crate) fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<Pixel>> {
         let plan = self.wave.plan_rays(&self.compute, scene, rays)?;
         let mut radiances = vec![[0.0; 4]; rays.len()];
@@ -245,12 +246,12 @@ impl DeviceRenderer {
     }
 }
 
-/// The finished share of some pixels.
+/// Returns the finished share of some pixels.
 fn share(pixels: &Range<u32>, pixel: u32) -> f32 {
     (pixel - pixels.start) as f32 / pixels.len() as f32
 }
 
-/// A frame was to be enqueued by a renderer without a host.
+/// Makes the error of a frame that was to be enqueued by a renderer without a host.
 pub(crate) fn no_host() -> Error {
     unfit(
         "queue",
@@ -267,7 +268,7 @@ pub(crate) mod tests {
     use crate::opencl::discover;
     use crate::scene::{Camera, Decay, Method, Torus};
 
-    /// A ring seen from 4 away, so many pixels wide and high, by Simpson's rule.
+    /// Makes a scene of a ring seen from 4 away, `size` pixels wide and high, by Simpson's rule.
     pub(crate) fn ring(size: u32) -> Scene {
         let mut scene = Scene::new(Camera::new(DVec3::new(2.8, 1.6, 2.3), DVec3::ZERO));
         scene.image = ImageSize {

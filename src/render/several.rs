@@ -29,7 +29,7 @@ struct SharedFrame<'a> {
     scene: &'a Scene,
     row_count: f32,
     stride: usize,
-    /// The first that occurs stops all.
+    /// The first that occurs stops all devices.
     error: OnceLock<Error>,
 }
 
@@ -53,7 +53,7 @@ impl SeveralRenderer {
         })
     }
 
-    /// As [`DeviceRenderer::render_rows`]. After an error, all devices have ended.
+    /// Renders as [`DeviceRenderer::render_rows`] does. After an error, all devices have ended.
     pub(crate) fn render_rows(
         &mut self,
         scene: &Scene,
@@ -114,14 +114,14 @@ impl SeveralRenderer {
         Ok(self.image.as_ref().map_or(&[], RadianceImage::as_slice))
     }
 
-    /// On the first device.
+    /// Integrates on the first device.
     pub(crate) fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<[f32; 4]>> {
         let traced = self.renderers[0].integrate(scene, rays)?;
         self.cost = self.renderers[0].cost();
         Ok(traced)
     }
 
-    /// Of the last frame, in the order of the devices.
+    /// Returns the rows of the last frame, in the order of the devices.
     pub(crate) fn rows(&self) -> &[Range<u32>] {
         &self.rows
     }
@@ -145,8 +145,9 @@ fn open(device: &Device, options: &RendererOptions) -> Result<DeviceRenderer> {
     }
 }
 
-/// Draws all parts that have rows: the first on this thread, which also tells `progress` of all. Threads are begun anew
-/// for every frame: that takes 30 us, and kept ones (rayon's) woke so unevenly that frames of 1 ms took 1.15 times as long.
+/// Draws all parts that have rows: the first on this thread, which also tells `progress` about all. Threads are started
+/// anew for every frame: that takes 30 us, and kept ones (rayon's) woke so unevenly that frames of 1 ms took 1.15 times
+/// as long.
 fn draw(
     parts: &mut [Share<'_>],
     frame: &SharedFrame<'_>,
@@ -162,7 +163,7 @@ fn draw(
             let rows = part.rows.len() as f32;
             let work = move || {
                 part.draw(frame, &mut |share| {
-                    // Somebody hears: the channel lasts longer than the thread.
+                    // Somebody receives this: the channel outlives the thread.
                     let _ = sender.send((number + 1, share * rows));
                 });
             };
@@ -216,7 +217,7 @@ impl Share<'_> {
     }
 }
 
-/// What all parts cost.
+/// Returns what all parts cost.
 fn cost(parts: &[Share<'_>]) -> FrameCost {
     let parts = parts.iter().filter(|part| !part.rows.is_empty());
     parts.fold(FrameCost::default(), |sum, part| {

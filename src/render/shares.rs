@@ -1,12 +1,13 @@
-//! How the rows of a frame are shared out among devices: by how many each drew in which time.
+//! How the rows of a frame are shared out among devices: by how many each drew in how much time.
 
 use std::ops::Range;
 use std::time::Duration;
 
-/// A device without rows gets some again once the frames without it took so many times as long as these will.
+/// A device without rows gets some again once the frames without it have taken this many times as long as those rows
+/// will.
 const PATIENCE: f64 = 50.0;
 
-/// How much of what the last frame says is believed.
+/// The least and the greatest share of what the last frame says that is believed.
 const LEAST_GAIN: f64 = 1.0 / 32.0;
 const MOST_GAIN: f64 = 0.5;
 
@@ -18,7 +19,7 @@ pub(crate) struct Shares(Vec<Speed>);
 struct Speed {
     /// Beside the others'; the sum of all is 1.
     speed: f64,
-    /// By how much the last frame would have it otherwise.
+    /// By how much the last frame would change it.
     change: Option<f64>,
     /// How much of that was believed.
     gain: f64,
@@ -41,7 +42,8 @@ impl Shares {
         Self(speeds.collect())
     }
 
-    /// The rows of each device, multiples of `grain` but for the last: so that all should be done at the same time.
+    /// Shares out the rows, in multiples of `grain` but for the last, so that all devices should be done at the same
+    /// time.
     pub(crate) fn split(&self, rows: u32, grain: u32) -> Vec<Range<u32>> {
         let mut left = rows.div_ceil(grain);
         let mut grains = vec![0_u32; self.0.len()];
@@ -78,7 +80,8 @@ impl Shares {
                 known.push((one, 1.0 / row));
             }
         }
-        // Rows may cost more than in the last frame, for all devices alike: only what they did beside each other counts.
+        // Rows may cost more than in the last frame, for all devices alike: only what they did beside each other
+        // counts.
         let speeds: f64 = known.iter().map(|(one, _)| one.speed).sum();
         let rates: f64 = known.iter().map(|(_, rate)| rate).sum();
         for (one, rate) in known {
@@ -92,11 +95,11 @@ impl Shares {
 }
 
 impl Speed {
-    /// Changes the speed: less and less where it goes back and forth, by noise or since a boundary jumps over rows that
-    /// cost more than others.
+    /// Changes the speed, less and less where it goes back and forth: by noise, or because a boundary jumps over rows
+    /// that cost more than others.
     fn believe(&mut self, change: f64) {
         self.gain = match self.change {
-            None => 1.0, // there was but a guess
+            None => 1.0, // so far there was only a guess
             Some(before) if before * change < 0.0 => LEAST_GAIN.max(0.5 * self.gain),
             Some(_) => MOST_GAIN.min(1.5 * self.gain),
         };
@@ -109,7 +112,7 @@ impl Speed {
 mod tests {
     use super::*;
 
-    /// Frames on devices of these speeds; `cost` is what a row costs.
+    /// Draws frames on devices of these speeds; `cost` is what a row costs.
     fn frames(
         shares: &mut Shares,
         speeds: &[f64],
@@ -142,7 +145,7 @@ mod tests {
         times.iter().copied().fold(0.0, f64::max)
     }
 
-    /// The time of a frame whose rows could be cut anywhere.
+    /// Returns the time of a frame whose rows could be cut anywhere.
     fn ideal(speeds: &[f64], rows: u32, cost: impl Fn(u32) -> f64) -> f64 {
         (0..rows).map(cost).sum::<f64>() / speeds.iter().sum::<f64>()
     }

@@ -24,7 +24,8 @@ pub struct Camera {
     /// Distance from the eye to the projection plane, where the rays begin, world units.
     #[serde(default = "default_near")]
     pub near: f64,
-    /// Length of every ray, `|E - S|`, world units; `None`: 5 times the distance from the projection plane to the target.
+    /// Length of every ray, `|E - S|`, world units; `None`: 5 times the distance from the projection plane to the
+    /// target.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ray_length: Option<f64>,
 }

@@ -71,13 +71,13 @@ pub enum Method {
 }
 
 impl Method {
-    /// The Simpson rule with so many divisions.
+    /// Makes the Simpson rule with this many divisions.
     #[must_use]
     pub fn simpson(divisions: u32) -> Self {
         Self::Simpson { divisions }
     }
 
-    /// The integral itself to a relative error, by tiles.
+    /// Makes the method that takes the integral itself to a relative error, by tiles.
     #[must_use]
     pub fn exact(tolerance: f64) -> Self {
         Self::Exact {
@@ -86,7 +86,7 @@ impl Method {
         }
     }
 
-    /// Its name in files: `simpson` or `exact`.
+    /// Returns its name in files: `simpson` or `exact`.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -95,7 +95,7 @@ impl Method {
         }
     }
 
-    /// The relative error aimed at; the default's for the Simpson rule, which aims at none.
+    /// Returns the relative error aimed at; the default's for the Simpson rule, which aims at none.
     pub(crate) fn tolerance(&self) -> f64 {
         match *self {
             Self::Simpson { .. } => 1e-3,
@@ -103,7 +103,7 @@ impl Method {
         }
     }
 
-    /// Where integrals are taken.
+    /// Returns where integrals are taken.
     pub(crate) fn sampling(&self) -> Sampling {
         match *self {
             Self::Simpson { .. } => Sampling::Pixels,
@@ -111,7 +111,7 @@ impl Method {
         }
     }
 
-    /// Where the method `exact` would take integrals.
+    /// Returns where the method `exact` would take integrals.
     #[cfg(feature = "papers")]
     pub(crate) fn sampling_or_default(&self) -> Sampling {
         match *self {
@@ -129,7 +129,7 @@ impl Method {
 }
 
 impl Default for Method {
-    /// The integral to 1e-3, by tiles.
+    /// Returns the method that takes the integral to 1e-3, by tiles.
     fn default() -> Self {
         Self::exact(1e-3)
     }
@@ -159,9 +159,9 @@ pub(super) fn check_tolerance(tolerance: f64) -> Checked {
 pub enum Sampling {
     /// At every pixel.
     Pixels,
-    /// Of each source, at every pixel near its core; elsewhere at a few pixels of a tile, the others interpolated within
-    /// the tolerance. Every pixel is taken all the same where sources of opposite signs cancel, whose errors do not, and
-    /// on the built-in reference.
+    /// For each source, at every pixel near its core; elsewhere at a few pixels of a tile, the others interpolated
+    /// within the tolerance. Every pixel is taken nevertheless where sources of opposite signs cancel, whose errors do
+    /// not, and on the built-in reference.
     #[default]
     Tiles,
 }

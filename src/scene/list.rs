@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A `Vec` with a revision: two lists of one revision hold the same. It reads and changes like the `Vec` it dereferences
-/// to; every mutable access counts as a change.
+/// A `Vec` with a revision: two lists of one revision hold the same. It reads and changes like the `Vec` it
+/// dereferences to; every mutable access counts as a change.
 ///
 /// ```
 /// use energywave::scene::{List, Sphere};
@@ -31,7 +31,7 @@ impl<T> List<T> {
         }
     }
 
-    /// A number that no list of other contents has had in this process.
+    /// Returns a number that no list of other contents has had in this process.
     pub(crate) fn revision(&self) -> u64 {
         self.revision
     }

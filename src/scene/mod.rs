@@ -1,8 +1,8 @@
 //! The scene: what glows, who looks, and how the light is summed. Plain data, buildable in code, readable from TOML or
 //! JSON (`Scene::from_file`), checked once ([`Scene::validate`]).
 //!
-//! All vectors are world space, right-handed; lengths in world units; angles in degrees; colours linear RGB. Structs may
-//! get further fields: write `..Torus::new(0.9)` and the like.
+//! All vectors are world space, right-handed; lengths in world units; angles in degrees; colours linear RGB. Structs
+//! may get further fields: write `..Torus::new(0.9)` and the like.
 
 mod camera;
 #[cfg(feature = "files")]
@@ -32,7 +32,8 @@ use kinds::for_each_kind;
 
 macro_rules! define_scene {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
-        /// A complete scene: camera, image size, the way of integrating, what hides the light, and the sources of light.
+        /// A complete scene: camera, image size, the way of integrating, what hides the light, and the sources of
+        /// light.
         #[derive(Debug, Clone, PartialEq)]
         pub struct Scene {
             /// Who looks, and along which rays.
@@ -76,7 +77,7 @@ macro_rules! define_scene {
                 $(self.$list.iter().for_each(|source| source.for_each_emission(add));)*
             }
 
-            /// Whether any source falls off in this way.
+            /// Returns whether any source falls off in this way.
             pub(crate) fn has_profile(&self, profile: Profile) -> bool {
                 $(self.$list.iter().any(|source| source.light().profile == profile))||*
             }
@@ -95,7 +96,7 @@ impl Scene {
         }
     }
 
-    /// Whether sources of opposite signs may cancel.
+    /// Returns whether sources of opposite signs may cancel.
     pub(crate) fn has_light_of_both_signs(&self) -> bool {
         let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
         self.for_each_emission(&mut |light| (low, high) = (low.min(light), high.max(light)));

@@ -92,8 +92,8 @@ impl ViewPlane {
         }
     }
 
-    /// Returns the parameter s, in `[0,1]`, at which a pixel's ray ends: g, or 1 if it is not hidden (Abe, Watanabe 2010, eq. 13,
-    /// 14). A depth begins at the eye, s at the plane.
+    /// Returns the parameter s, in `[0,1]`, at which a pixel's ray ends: g, or 1 if it is not hidden (Abe, Watanabe
+    /// 2010, eq. 13, 14). A depth begins at the eye, s at the plane.
     #[must_use]
     pub fn end(&self, ray: &Ray, depth: f32, along: DepthAlong) -> f64 {
         let to_plane = ray.origin.distance(self.eye);

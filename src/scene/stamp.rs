@@ -1,4 +1,4 @@
-//! Stamps: small values that are equal only where scenes are, so that nobody looks at every source again.
+//! Stamps: small values that are equal only where the scenes are, so that nobody has to look at every source again.
 
 use super::kinds::{KIND_COUNT, for_each_kind};
 use super::{Camera, Decay, Integration, Scene};

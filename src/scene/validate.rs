@@ -1,4 +1,4 @@
-//! The one check of a scene's values. What passes here needs no defence further on: not in the packing, not in a kernel.
+//! The one check of a scene's values. What passes here needs no further check, neither in packing nor in a kernel.
 
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite};
@@ -42,7 +42,7 @@ impl Scene {
         self.check_sources(&brightness)
     }
 
-    /// The greatest value that decay times field times measure can take, on a ray through a core.
+    /// Returns the greatest value that decay times field times measure can take, on a ray through a core.
     fn brightness(&self) -> Brightness {
         let decay = self.decay.map_or(1.0, |decay| decay.at(0.0));
         let length = self.camera.ray_length();

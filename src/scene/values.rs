@@ -1,4 +1,4 @@
-//! The checks of single values, and the reading of vectors. A check that passes makes no string.
+//! The checks of single values, and the reading of vectors. A check that passes allocates no string.
 
 use std::borrow::Cow;
 
@@ -29,12 +29,12 @@ impl Fault {
         }
     }
 
-    /// The same fault at another key.
+    /// Moves the fault to another key.
     pub(crate) fn at(self, key: Cow<'static, str>) -> Self {
         Self { key, ..self }
     }
 
-    /// The fault of a table of the scene, such as `camera` or `torus[1]`.
+    /// Makes it the fault of a table of the scene, such as `camera` or `torus[1]`.
     pub(super) fn of(self, table: &str) -> SceneError {
         match table {
             "" => SceneError::value(self.key, self.message),
@@ -99,12 +99,12 @@ pub(crate) fn read_vector<'de, D: Deserializer<'de>>(reader: D) -> Result<DVec3,
     Ok(numbers.into())
 }
 
-/// A reader's message about a key of the table that it reads; [`unnamed`] takes it apart again.
+/// Makes a reader's message about a key of the table that it reads; [`unnamed`] takes it apart again.
 pub(crate) fn named(key: &str, message: &str) -> String {
     format!("key `{key}`: {message}")
 }
 
-/// The key that a message of [`named`] is about, and the message.
+/// Returns the key that a message of [`named`] is about, and the message.
 #[cfg(feature = "files")]
 pub(super) fn unnamed(message: &str) -> Option<(&str, &str)> {
     message.strip_prefix("key `")?.split_once("`: ")

@@ -16,7 +16,7 @@ const LEN: usize = OPEN_TILES + tiles::MOST_PASSES;
 pub(super) type Counts = Counters<LEN>;
 pub(super) type CountedNumbers = Counted<LEN>;
 
-/// The numbers' places, for the kernels' compiler.
+/// Returns the numbers' places, for the kernels' compiler.
 pub(super) fn definitions() -> String {
     format!(
         " -D COUNT_INTEGRALS={INTEGRALS} -D COUNT_NODES_TAKEN={NODES} -D COUNT_OPEN_TILES={OPEN_TILES}"

@@ -51,7 +51,8 @@ pub(super) enum Variant {
 pub(super) struct Kernels(HashMap<Task, Kernel>);
 
 impl Kernels {
-    /// Makes sure of a kernel; its program if it was built now. `rule` is what the method `exact` integrates with.
+    /// Makes sure that a kernel is built, and returns its program if it was built now. `rule` is what the method
+    /// `exact` integrates with.
     ///
     /// # Errors
     /// As [`Program::build`].
@@ -77,17 +78,17 @@ impl Kernels {
         Ok(Some(program))
     }
 
-    /// Lets a kernel go.
+    /// Forgets a kernel.
     pub(super) fn forget(&mut self, task: Task) {
         self.0.remove(&task);
     }
 
-    /// How many were built.
+    /// Returns how many were built.
     pub(super) fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// A kernel that was made sure of.
+    /// Returns a kernel that was prepared.
     pub(super) fn get(&self, task: Task) -> Result<&Kernel> {
         self.0.get(&task).ok_or_else(|| {
             Error::Unsupported("a kernel that was never built was launched".to_owned())
@@ -95,7 +96,7 @@ impl Kernels {
     }
 }
 
-/// What every program of the wave is built with: the host owns these numbers.
+/// Returns what every program of the wave is built with: the host owns these numbers.
 pub(crate) fn common_definitions(counts_samples: bool) -> String {
     let sizes: String = STRUCTS
         .iter()

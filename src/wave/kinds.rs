@@ -1,5 +1,5 @@
-//! The kernels' source: the files of `cl/`, and the generated `kinds.h` with the kinds of source that a scene has. What it
-//! has not is not compiled.
+//! The kernels' source: the files of `cl/`, and the generated `kinds.h` with the kinds of source that a scene has.
+//! Other kinds are not compiled.
 
 use crate::opencl::{SHARED, SourceFile, Sources, embed};
 use crate::scene::kinds::{KIND_COUNT, for_each_kind};
@@ -55,7 +55,7 @@ pub(crate) fn resolve(file: &str, present: &Present) -> String {
     with_kinds(present, |sources| sources.resolve(file))
 }
 
-/// Likewise for a text that includes files of `cl/`; `name` stands for it in the compiler's log.
+/// Gives the resolved text of a source that includes files of `cl/`; `name` stands for it in the compiler's log.
 pub(crate) fn resolve_text(name: &str, text: &str, present: &Present) -> String {
     with_kinds(present, |sources| sources.resolve_text(name, text))
 }

@@ -8,7 +8,7 @@ use crate::scene::kinds::for_each_kind;
 
 macro_rules! define_lists {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
-        /// Each is uploaded when it changed.
+        /// The lists, each of which is uploaded when it changed.
         #[derive(Debug)]
         pub(super) struct Lists {
             nodes: Uploaded<Node>,
@@ -45,7 +45,7 @@ macro_rules! define_lists {
                 Ok(())
             }
 
-            /// The lists by the names that kernels know them by; of sources, those that there are.
+            /// Returns the lists by the names that kernels know them by; of sources, those that there are.
             pub(super) fn named(&self, sources: &Sources) -> Vec<(&'static str, &dyn Argument)> {
                 let mut named: Vec<(&str, &dyn Argument)> =
                     vec![("nodes", &self.nodes), ("spline_pieces", &self.spline_pieces)];
@@ -78,7 +78,7 @@ impl Lists {
         self.rays.upload(compute, rays)
     }
 
-    /// The single rays, for kernels.
+    /// Returns the single rays, for kernels.
     pub(super) fn rays(&self) -> &dyn Argument {
         &self.rays
     }

@@ -1,5 +1,5 @@
-//! The wave: the engine that integrates light along rays on an OpenCL device. A frame is planned ([`Wave::plan`]), then drawn
-//! into a [`Film`](crate::opencl::Film).
+//! The wave: the engine that integrates light along rays on an OpenCL device. A frame is planned ([`Wave::plan`]), then
+//! drawn into a [`Film`](crate::opencl::Film).
 
 mod counts;
 mod dispatch;
@@ -57,7 +57,7 @@ pub struct Wave {
     under_way: VecDeque<Launched>,
     /// Launches of frames that nobody waited for.
     unwatched: Vec<Launched>,
-    /// Other commands of such frames: PoCL 3.1 aborts where an event fails that was let go before it was over.
+    /// Other commands of such frames: PoCL 3.1 aborts when an event fails that was released before it was over.
     held: Vec<Handle<Event>>,
 }
 
@@ -91,22 +91,23 @@ impl Wave {
         self.rule = rule;
     }
 
-    /// What was drawn since the frame began cost.
+    /// Returns the cost of what was drawn since the frame began.
     pub(crate) fn cost(&self) -> FrameCost {
         self.cost
     }
 
-    /// How many kernels were built.
+    /// Returns how many kernels were built.
     pub(crate) fn kernel_count(&self) -> usize {
         self.kernels.count()
     }
 
-    /// An image of the scene that is cut at multiples of so many rows is the same to the bit as in one piece.
+    /// Returns the rows at whose multiples the scene's image may be cut and still be, to the bit, the same as in one
+    /// piece.
     pub(crate) fn grain_rows(&mut self, scene: &Scene) -> u32 {
         grain_rows(scene, self.packed.facts(scene).has_both_signs)
     }
 
-    /// Plans the frame of a valid scene: packs it, uploads what changed, and makes sure of the kernels.
+    /// Plans the frame of a valid scene: packs it, uploads what changed, and makes sure that its kernels are built.
     ///
     /// # Errors
     /// As [`crate::Renderer::render`].
@@ -187,7 +188,7 @@ impl Wave {
         self.rule.unwrap_or(fitting)
     }
 
-    /// Makes sure of the kernels and uploads what changed.
+    /// Makes sure that the kernels are built, and uploads what changed.
     fn prepare(
         &mut self,
         compute: &Compute,
@@ -226,7 +227,7 @@ impl Wave {
         Ok(plan)
     }
 
-    /// What a band of pixels is, by whole rows.
+    /// Returns the pixels of whole rows.
     pub(crate) fn pixels_of(scene: &Scene, rows: &Range<u32>) -> Range<u32> {
         rows.start * scene.image.width..rows.end * scene.image.width
     }

@@ -1,5 +1,5 @@
-//! The plan of a frame, or of a list of rays: which kernel, what it is told, and what its launches may take. It says what is
-//! to be done; `dispatch` does it.
+//! The plan of a frame, or of a list of rays: which kernel, what it is told, and what its launches may take. It says
+//! what is to be done; `dispatch` does it.
 
 use super::kernels::{Rays, Task, Variant};
 use super::pack::layout::{Integrand, Launch, TilePass, View};
@@ -26,7 +26,7 @@ pub(crate) struct Plan {
     first_tile_size: u32,
 }
 
-/// An image that is cut at multiples of so many rows is the same to the bit as in one piece.
+/// Returns the rows at whose multiples an image may be cut and still be, to the bit, the same as in one piece.
 pub(crate) fn grain_rows(scene: &Scene, has_both_signs: bool) -> u32 {
     match has_tiles(scene, has_both_signs) {
         true => tiles::first_size(scene.image),
@@ -34,7 +34,7 @@ pub(crate) fn grain_rows(scene: &Scene, has_both_signs: bool) -> u32 {
     }
 }
 
-/// Whether integrals are taken by tiles.
+/// Returns whether integrals are taken by tiles.
 pub(super) fn has_tiles(scene: &Scene, has_both_signs: bool) -> bool {
     scene.integration.method.sampling() == Sampling::Tiles
         && !has_both_signs
@@ -42,7 +42,7 @@ pub(super) fn has_tiles(scene: &Scene, has_both_signs: bool) -> bool {
 }
 
 impl Plan {
-    /// `units`: the device's compute units.
+    /// Makes the plan of a task; `units` are the device's compute units.
     pub(super) fn new(
         task: Task,
         view: Option<View>,
@@ -84,23 +84,23 @@ impl Plan {
         }
     }
 
-    /// Pixels of a band are a multiple of this.
+    /// Returns the number that the pixels of a band are a multiple of.
     pub(crate) fn grain(&self) -> u32 {
         self.work.grain
     }
 
-    /// Which sources a part takes.
+    /// Returns which sources a part takes.
     pub(super) fn launch(&self, part: &Part) -> Launch {
         partition::launch(part, &self.counts)
     }
 
-    /// Whether no launch has drawn a part's pixels before, and whether none will afterwards.
+    /// Returns whether no launch has drawn a part's pixels before, and whether none will afterwards.
     pub(super) fn place_of(&self, part: &Part) -> (bool, bool) {
         let is_first = part.sources.start == 0;
         (is_first, part.sources.end >= self.work.source_count)
     }
 
-    /// The passes of a part; none where no tiles are wanted.
+    /// Returns the passes of a part; none where no tiles are wanted.
     pub(super) fn passes(&self, part: &Part) -> Vec<TilePass> {
         match (self.task.rays, &self.view) {
             (Rays::Tiles, Some(view)) => {

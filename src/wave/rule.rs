@@ -1,7 +1,7 @@
 //! The quadrature of the method `exact`: how many Gauss-Legendre nodes a panel has, and when it counts as resolved.
 
-/// A rule for every panel. A panel is resolved where the two highest Legendre coefficients that its nodes see stay below
-/// a threshold, relative to the integral.
+/// A rule for every panel. A panel is resolved where the two highest Legendre coefficients that its nodes see stay
+/// below a threshold, relative to the integral.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rule {
     /// Nodes of a panel, an even number.
@@ -37,8 +37,8 @@ const fn rule(nodes: u32, smooth_threshold: f32, kinked_threshold: f32) -> Rule 
 }
 
 impl Rule {
-    /// Chooses the rule that meets a tolerance. Fields that fall off with the squared distance have sharper peaks, which
-    /// a loose rule may miss.
+    /// Chooses the rule that meets a tolerance. Fields that fall off with the squared distance have sharper peaks,
+    /// which a loose rule may miss.
     pub fn of(tolerance: f64, has_squares: bool) -> Self {
         let most = if has_squares { MOST_FOR_SQUARES } else { 1.0 };
         let wanted = tolerance.min(most);
@@ -50,8 +50,8 @@ impl Rule {
             .map_or(strictest, |(_, rule)| *rule)
     }
 
-    /// Gives the rule as the kernels' compiler gets it: nodes in (0,1), their weights, and those weights times the Legendre
-    /// polynomials of the two highest degrees that the nodes can tell apart, one even, one odd.
+    /// Gives the rule as the kernels' compiler gets it: nodes in (0,1), their weights, and those weights times the
+    /// Legendre polynomials of the two highest degrees that the nodes can tell apart, one even, one odd.
     pub fn definitions(&self) -> String {
         let count = self.nodes as usize;
         let nodes: Vec<Node> = gauss_legendre(count);
@@ -82,7 +82,7 @@ struct Node {
     weight: f64,
 }
 
-/// The positive nodes of the rule with `count` nodes, an even number, by Newton's method.
+/// Returns the positive nodes of the rule with `count` nodes, an even number, by Newton's method.
 fn gauss_legendre(count: usize) -> Vec<Node> {
     let node = |k: usize| {
         let mut x = (std::f64::consts::PI * (k as f64 + 0.75) / (count as f64 + 0.5)).cos();
@@ -99,7 +99,7 @@ fn gauss_legendre(count: usize) -> Vec<Node> {
     (0..count / 2).map(node).collect()
 }
 
-/// The Legendre polynomial of a degree and its derivative, |x| < 1.
+/// Returns the Legendre polynomial of a degree and its derivative, |x| < 1.
 fn legendre(degree: usize, x: f64) -> (f64, f64) {
     let (mut before, mut value) = (0.0, 1.0);
     for k in 0..degree {

@@ -1,5 +1,5 @@
-//! The first use of freshly built kernels: two small scenes whose light is known from the float64 reference. Drivers have
-//! miscompiled kernels; one that does is refused before it draws.
+//! The first use of freshly built kernels: two small scenes whose light is known from the float64 reference. Drivers
+//! have miscompiled kernels; a device whose driver does is refused before it draws.
 
 use std::mem;
 use std::ops::ControlFlow;
@@ -19,10 +19,10 @@ use crate::scene::{
 };
 use crate::threads;
 
-/// Which pixels are compared: every so many, a number that shares no divisor with the width and the lanes.
+/// The step from one compared pixel to the next: a number that shares no divisor with the width and the lanes.
 const STRIDE: usize = 97;
 
-/// What is allowed relative to the pixel, if the tolerance is not larger: what float32 and half floats lose.
+/// The relative error that a pixel may have even if the tolerance is smaller: what float32 and half floats lose.
 const LEAST_LIMIT: f64 = 1e-3;
 
 /// Two tiles wide and high, with room for some that are smooth.
@@ -91,7 +91,7 @@ impl Wave {
         })
     }
 
-    /// Pixels of the known scene, by the very kernels of a task.
+    /// Draws the pixels of the known scene by the very kernels of a task.
     fn draw_known(&mut self, compute: &Compute, task: Task, scene: &Scene) -> Result<Vec<Pixel>> {
         let size = scene.image;
         let mut film = Film::in_format(compute, task.film, size.width, size.height)?;
@@ -124,7 +124,7 @@ impl Wave {
     }
 }
 
-/// Whether light is within the limit, relative to the brightest channel, and alpha is 1.
+/// Returns whether light is within the limit, relative to the brightest channel, and alpha is 1.
 fn agrees(found: Pixel, expected: DVec3, limit: f64) -> bool {
     let [.., alpha] = found;
     let allowed = limit * expected.max_element();
@@ -133,8 +133,8 @@ fn agrees(found: Pixel, expected: DVec3, limit: f64) -> bool {
     alpha == 1.0 && errors.all(|error| error <= allowed) // which no NaN is
 }
 
-/// The scenes that a task's kernels are built for, and nothing else: one with decay and depths along the rays, one with
-/// softening and depths along the axis.
+/// Returns the scenes that a task's kernels are built for, and nothing else: one with decay and depths along the rays,
+/// one with softening and depths along the axis.
 fn known_scenes(task: Task) -> Result<[Scene; 2]> {
     let mut near = Scene::new(Camera::new(DVec3::new(0.4, -4.0, 1.7), DVec3::ZERO));
     near.decay = Some(Decay {
@@ -160,7 +160,8 @@ fn known_scenes(task: Task) -> Result<[Scene; 2]> {
     Ok([near, far])
 }
 
-/// The tolerance is the strictest that a task's kernels serve (see [`super::Rule`]), or one that float32 meets.
+/// Returns how a task integrates. The tolerance is the strictest that a task's kernels serve (see [`super::Rule`]), or
+/// one that float32 meets.
 fn integration(task: Task, softening: f64) -> Integration {
     let sampling = match task.rays {
         Rays::Tiles => Sampling::Tiles,
@@ -180,7 +181,7 @@ fn integration(task: Task, softening: f64) -> Integration {
     }
 }
 
-/// A slope up to the sources, with a hole and an edge.
+/// Returns the depth of a pixel: a slope up to the sources, with a hole and an edge.
 fn depth(index: usize, distance: f64) -> f32 {
     let (row, column) = (index / SIZE.width as usize, index % SIZE.width as usize);
     match row + column {

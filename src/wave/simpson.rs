@@ -3,7 +3,7 @@
 use super::pack::layout::Node;
 use crate::scene::Decay;
 
-/// The nodes over s in `[0,1]`: the weights 1, 4, 2, 4, .., 4, 1 over 3 n, times the decay.
+/// Returns the nodes over s in `[0,1]`: the weights 1, 4, 2, 4, .., 4, 1 over 3 n, times the decay.
 pub(super) fn nodes(divisions: u32, decay: Option<Decay>) -> Vec<Node> {
     let count = f64::from(divisions);
     let node = |k: u32| {

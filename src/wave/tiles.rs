@@ -16,8 +16,8 @@ const LARGEST: u32 = 256;
 /// Passes at most.
 pub(super) const MOST_PASSES: usize = (LARGEST / SMALLEST).ilog2() as usize + 1;
 
-/// The side of the first pass' tiles: about a sixteenth of an image, so that many tiles see a wave whole and the first
-/// pass costs the same at every size.
+/// Returns the side of the first pass' tiles: about a sixteenth of an image, so that many tiles see a wave whole and
+/// the first pass costs the same at every size.
 pub(super) fn first_size(image: ImageSize) -> u32 {
     let side = image.width.max(image.height);
     (side / 16).next_power_of_two().clamp(64, LARGEST)
@@ -26,8 +26,8 @@ pub(super) fn first_size(image: ImageSize) -> u32 {
 /// Pixels of one launch, so that the list of open tiles stays small; a frame of 3840x2160 fits.
 pub(super) const MOST_PIXELS: u32 = 1 << 23;
 
-/// Words of 32 sources of one launch, of which a group of work-items holds as many: 1 KiB of the 32 KiB of local memory that
-/// OpenCL 1.2 promises.
+/// Words of 32 sources of one launch, of which a group of work-items holds as many: 1 KiB of the 32 KiB of local memory
+/// that OpenCL 1.2 promises.
 const MOST_WORDS: u32 = 256;
 
 /// Sources of one launch. Each kind begins with a new word, so that all but one may leave 31 bits of a word unused.
@@ -36,8 +36,8 @@ pub(super) const MOST_SOURCES: u64 = 32 * (MOST_WORDS as u64 - (KIND_COUNT as u6
 const _: () = assert!(MOST_SOURCES as usize + 31 * KIND_COUNT <= 32 * MOST_WORDS as usize + 31);
 
 /// Groups of work-items for each compute unit, which share the tiles evenly: enough for a fair share, few enough that
-/// those without a tile cost nothing (on PoCL 3.1 with 2 units 4096 groups take a ring at 512x512 1.5 times as long; half
-/// as many as 512 save 2 %, and 4 % where two devices share the image).
+/// those without a tile cost nothing (on PoCL 3.1 with 2 units 4096 groups take a ring at 512x512 1.5 times as long;
+/// half as many as 512 save 2 %, and 4 % where two devices share the image).
 const GROUPS_A_UNIT: usize = 128;
 
 /// What a tile's light takes: three channels at 16 nodes.
@@ -46,7 +46,7 @@ const LIGHT: usize = 48;
 /// Column and row of an open tile, before its words of sources.
 const PLACE: usize = 2;
 
-/// For the kernels' compiler: calls instead of copies of what is needed in several places.
+/// Returns definitions for the kernels' compiler: calls instead of copies of what is needed in several places.
 pub(super) fn definitions(workers: u32) -> String {
     format!(" -D PER_RAY= -D MOST_WORDS={MOST_WORDS} -D TILE_WORKERS={workers}")
 }
@@ -82,21 +82,21 @@ fn reserve<T: bytemuck::Pod>(
     Ok(())
 }
 
-/// What float32 rays differ from each other anyway.
+/// By how much float32 rays differ from each other anyway.
 const LEAST_TOLERANCE: f64 = 2e-5;
 
 /// How much of the tolerance an interpolation may use up where it is tested.
 const MOST_ERROR: f64 = 0.25;
 
-/// How smooth an interpolation must seem for a tolerance to be tested: the largest odd and even highest Chebyshev coefficient, of the
-/// least value. Of a function that is analytic beside the tile the coefficients fall as `rho^-k`: after `rho^-2` and
-/// `rho^-3`, the highest of four nodes, `rho^-4` is missing.
+/// Returns how smooth an interpolation must seem to be put to the test for a tolerance: the largest odd and the largest
+/// even highest Chebyshev coefficient, relative to the least value. Of a function that is analytic beside the tile the
+/// coefficients fall as `rho^-k`: after `rho^-2` and `rho^-3`, the highest of four nodes, `rho^-4` is missing.
 fn most_coefficients(tolerance: f64) -> (f32, f32) {
     let missing = 0.1 * tolerance;
     (3.0 * missing.powf(0.75) as f32, 1.6 * missing.sqrt() as f32)
 }
 
-/// The passes over the tiles of a part, whole rows of tiles of an image.
+/// Returns the passes over the tiles of a part, whole rows of tiles of an image.
 pub(super) fn passes(
     part: &Part,
     counts: &Counts,
@@ -135,7 +135,7 @@ pub(super) fn passes(
     (0..=last).map(&mut pass).collect()
 }
 
-/// Work-items of a group, which share the 16 nodes of a tile.
+/// Returns the work-items of a group, which share the 16 nodes of a tile.
 pub(super) fn workers(device: &OpenClDevice, options: &RendererOptions) -> u32 {
     let most = 16 / options.lanes.unwrap_or(device.lanes);
     let suitable = match device.device_type {
@@ -145,12 +145,13 @@ pub(super) fn workers(device: &OpenClDevice, options: &RendererOptions) -> u32 {
     options.tile_workers.unwrap_or(suitable).min(most)
 }
 
-/// Groups of work-items for a pass on a device of so many compute units.
+/// Returns the groups of work-items for a pass on a device with this many compute units.
 pub(super) fn groups(pass: &TilePass, units: u32) -> usize {
     ((pass.tile_count as usize) << (2 * pass.level)).min(GROUPS_A_UNIT * units as usize)
 }
 
-/// The second node's pixel: the Chebyshev zeros stretched to the tile's first and last pixel lie 0.29 from them.
+/// Returns the second node's pixel: the Chebyshev zeros stretched to the tile's first and last pixel lie 0.29 from
+/// them.
 fn inner(size: u32) -> u32 {
     9 * size / 32
 }

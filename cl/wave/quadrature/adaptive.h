@@ -76,7 +76,8 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
 }
 
 #if KIND_HAS(two_panels)
-// The two panels on both sides of a cut at once: what one waits for, the other fills. Whether both are resolved.
+// Integrates the two panels on both sides of a cut at once, so that one works while the other waits, and returns
+// whether both are resolved.
 INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold, const floatv cut,
                             floatv *const integral) {
     const floatv end = peaks->ray->end;

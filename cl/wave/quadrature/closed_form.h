@@ -35,7 +35,7 @@ typedef struct {
     floatv a; // of f^2 = a v^2 + ..
 } Ends;
 
-// x0 and x1 are slope s + offset at the ends.
+// Returns a stretch's ends in v; x0 and x1 are slope s + offset there.
 INLINE Ends ends_of(const Quadratic *const distance2, const Decay decay, const Stretch stretch, const floatv x0,
                     const floatv x1) {
     const floatv least = distance2->least;
@@ -53,7 +53,7 @@ INLINE Ends ends_of(const Quadratic *const distance2, const Decay decay, const S
     return ends;
 }
 
-// (artanh(m) / m - 1) / m^2 for m^2 up to 0.2.
+// Returns (artanh(m) / m - 1) / m^2 for m^2 up to 0.2.
 floatv artanh_series(const floatv m2) {
     floatv series = splat(1.0f / 21.0f);
     for (int odd = 19; odd > 1; odd -= 2)
@@ -65,7 +65,7 @@ floatv artanh_series(const floatv m2) {
 #define HALF_LN_2 0.346573590f
 #endif
 
-// The integral of the light times n / f over v.
+// Returns the integral of the light times n / f over v.
 INLINE floatv inverse_over(const Ends *const ends, const floatv least) {
     const floatv sum = ends->f0 + ends->f1;
     const floatv per_sum = inverse(max(sum, 1e-30f));

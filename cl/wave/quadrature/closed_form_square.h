@@ -7,8 +7,9 @@
 #define HALF_PI 1.57079633f
 #endif
 
-// From 1 / f^2 at four Gauss-Legendre nodes, for a stretch so short that f hardly changes. It begins with f^2 = middle2
-// in its middle; half of `rise` is added at its end and taken away at its beginning, and `bulge` added at both.
+// Integrates from 1 / f^2 at four Gauss-Legendre nodes, for a stretch so short that f hardly changes. It begins with
+// f^2 = middle2 in its middle; half of `rise` is added at its end and taken away at its beginning, and `bulge` added at
+// both.
 INLINE floatv short_square_over(const Ends *const ends, const floatv middle2, const floatv rise, const floatv bulge) {
     const float node[2] = {0.861136312f, 0.339981044f}, weight[2] = {0.347854845f, 0.652145155f};
     const floatv mean_l = 0.5f * (ends->l0 + ends->l1), half_l = 0.5f * (ends->l1 - ends->l0);
@@ -24,15 +25,15 @@ INLINE floatv short_square_over(const Ends *const ends, const floatv middle2, co
     return 0.5f * ends->advance * sum;
 }
 
-// With f^2 = a y^2 + f_least^2, y counted from the peak: the integrals of 1 / f^2, y / f^2 and y^2 / f^2 are an angle,
-// a logarithm, and what is left of the stretch.
+// Integrates over a longer stretch: with f^2 = a y^2 + f_least^2, y counted from the peak, the integrals of 1, y and
+// y^2, each over f^2, are an angle, a logarithm, and what is left of the stretch.
 INLINE floatv long_square_over(const Ends *const ends, const floatv least, const floatv rise) {
     const floatv per_a = inverse(max(ends->a, 1e-30f));
     const floatv d = ends->advance, per_d = inverse(max(d, 1e-30f));
     const floatv root = 0.5f * twice_sqrt(max(least, 1e-36f)) * ends->rate; // of a c - b^2
     const floatv per_root = inverse(max(root, 1e-30f));
 
-    // The angle under which the peak sees the stretch has the tangent t of its half, or of half of what lacks to pi.
+    // The peak sees the stretch under an angle. Half of it, or half of what it lacks to pi, has the tangent t.
     const floatv per_sum = inverse(max(ends->f0f1 + fabs(ends->g), 1e-36f));
     const floatv t = min(root * d * per_sum, 1.0f);
     const floatv arc = arctangent_ratio(t * t);

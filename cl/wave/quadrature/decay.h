@@ -17,18 +17,18 @@ Decay decay_of(const Integrand *const integrand) {
     return decay;
 }
 
-// beta / (s + beta), which is -v; 1 without decay.
+// Returns beta / (s + beta), which is -v; 1 without decay.
 floatv nearness(const Decay decay, const floatv s) {
     return decay.beta > 0.0f ? decay.beta * inverse(s + decay.beta) : splat(1.0f);
 }
 
-// zeta(s) itself.
+// Returns zeta(s) itself.
 floatv decay_at(const Decay decay, const floatv s) {
     const floatv near = nearness(decay, s);
     return decay.beta > 0.0f ? decay.strength * decay.per_beta * near * near : splat(1.0f);
 }
 
-// v(to) - v(from), from their nearness.
+// Returns v(to) - v(from), from their nearness.
 floatv advance(const Decay decay, const floatv from, const floatv near_from, const floatv to, const floatv near_to) {
     return decay.beta > 0.0f ? (to - from) * near_from * near_to * decay.per_beta : to - from;
 }

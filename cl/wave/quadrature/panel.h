@@ -1,13 +1,13 @@
 // A panel of a ray, mapped so that its integrand is smooth: v takes the decay away (decay.h), v = v0 + w sinh u the
 // peak. v0 + i w is where the squared distance to the core, continued to complex s, becomes 0: past this point of the
-// core the field is as 1 / sqrt((v - v0)^2 + w^2), and constant in u. The map decides how many nodes are needed, not
+// core the field is like 1 / sqrt((v - v0)^2 + w^2), and constant in u. The map decides how many nodes are needed, not
 // what they add up to.
 #pragma once
 #include "../../elementary.h"
 #include "../../view.h"
 #include "decay.h"
 
-// The advance of v, of that from the beginning of the ray, up to which a panel is empty.
+// The advance of v up to which a panel is empty, as a share of the advance from the beginning of the ray.
 #define SHORTEST_PANEL 1e-7f
 
 // A complex zero of the squared distance along the ray, as a parameter s.
@@ -32,18 +32,18 @@ typedef struct {
     intv is_broken;     // whether it must be cut whatever the nodes say
 } PanelSum;
 
-// Whether so little of v passes, beside what has passed before, that nothing adds up.
+// Returns whether so little of v passes, beside what has passed before, that it adds nothing.
 intv is_empty_panel(const Decay decay, const floatv from, const floatv to) {
     const floatv near_to = nearness(decay, to);
     const floatv all = advance(decay, splat(0.0f), splat(1.0f), to, near_to);
     return advance(decay, from, nearness(decay, from), to, near_to) <= SHORTEST_PANEL * all;
 }
 
-// A ray that passes a core at a distance h below the floor f sees the field cut off at f. Where core and ray are
-// straight its integral is that of a field without floor past the core at the distance (c + f) e^(-c/f), c^2 = f^2 -
-// h^2: the square of it from the squares of h and f, by a polynomial within 0.1 %. For the inverse square the integral
-// is 2 c / f^2
-// + 4 / h atan(h / (c + f)) instead of pi over the distance.
+// Returns the squared distance at which a ray passes a core, raised where that is below the floor. A ray that passes a
+// core at a distance h below the floor f sees the field cut off at f. Where core and ray are straight its integral is
+// that of a field without floor past the core at the distance (c + f) e^(-c/f), c^2 = f^2 - h^2: a polynomial gives the
+// square of that from the squares of h and f, within 0.1 %. For the inverse square the integral is 2 c / f^2 + 4 / h
+// atan(h / (c + f)) instead of pi over the distance.
 INLINE floatv floored(const floatv least, const floatv floor2, const uint is_square) {
     const intv is_below = least < floor2;
     if (!any_lane(is_below))
@@ -60,7 +60,7 @@ INLINE floatv floored(const floatv least, const floatv floor2, const uint is_squ
     return select(least, raised * floor2, is_below);
 }
 
-// Of two peaks, the one closer to the panel in the complex plane.
+// Returns the one of two peaks that is closer to the panel in the complex plane.
 Peak nearer_peak(const Peak a, const Peak b, const floatv from, const floatv to) {
     const floatv to_a = a.re - clamp(a.re, from, to), to_b = b.re - clamp(b.re, from, to);
     const intv is_b = fma(to_b, to_b, b.im * b.im) < fma(to_a, to_a, a.im * a.im);
@@ -68,13 +68,14 @@ Peak nearer_peak(const Peak a, const Peak b, const floatv from, const floatv to)
     return nearer;
 }
 
-// e^asinh(x)
+// Returns e^asinh(x).
 floatv exp_asinh(const floatv x) {
     const floatv sum = fma(twice_sqrt(fma(x, x, splat(1.0f))), splat(0.5f), fabs(x));
     return select(sum, inverse(sum), x < 0.0f);
 }
 
-// from < to, base between them; the peak is seen from the base, so that next to a core it keeps its digits.
+// Maps the panel between from and to, with base between them. The peak is seen from the base, so that it keeps its
+// digits next to a core.
 INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from, const floatv to, const floatv base) {
     Panel panel;
     panel.base = base;
@@ -97,7 +98,7 @@ INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from,
     panel.middle = clamp(panel.middle, begin - length, end + length);
     width = clamp(width, 1e-8f * length, length);
     const floatv per_width = inverse(width);
-    // e^u at the end, e^-u at the beginning: none but large numbers where the peak lies between.
+    // e^u at the end, e^-u at the beginning: both are large where the peak lies between.
     const floatv at_end = exp_asinh((end - panel.middle) * per_width);
     const floatv at_begin = exp_asinh((panel.middle - begin) * per_width);
     const floatv growth = at_end * at_begin;
@@ -108,7 +109,7 @@ INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from,
     return panel;
 }
 
-// s - base of the point that lies `x` ahead of the base in v.
+// Returns s - base of the point that lies `x` ahead of the base in v.
 floatv parameter_of(const Panel *const panel, const floatv x) {
     return x * coarse_inverse(fma(-panel->bend, x, panel->stretch));
 }

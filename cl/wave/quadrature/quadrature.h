@@ -1,4 +1,4 @@
-// What both methods know besides the ray and the source.
+// What both methods know in addition to the ray and the source.
 #pragma once
 #include "../types.h"
 #include "decay.h"

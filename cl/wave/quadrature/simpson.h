@@ -1,7 +1,7 @@
 #pragma each_kind
 // Composite Simpson rule (Watanabe, Abe, Konno 2015, eq. 23) over the field of a KIND: the sum of weight times field
-// over the nodes. The host tabulates them over all of a ray with the decay in their weights; where depths end the rays
-// (-D DEPTH), for a part of one, without.
+// over the nodes. The host tabulates the nodes over a whole ray, with the decay in their weights; where depths end the
+// rays (-D DEPTH), over a part of one, without it.
 
 // The sum is taken in blocks: rounding then grows with the block, not with up to 65537 nodes.
 #ifndef SIMPSON_BLOCK

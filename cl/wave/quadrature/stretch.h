@@ -18,8 +18,8 @@ Stretch part_of(const Stretch stretch, const floatv from, const floatv to) {
     return part;
 }
 
-// The mean of x over a stretch, 0 at its beginning and 1 at its end, weighted with the decay: -r (log r + u) / u^2 for
-// a nearness that falls by the factor r = 1 - u.
+// Returns the mean of x over a stretch, 0 at its beginning and 1 at its end, weighted with the decay: -r (log r + u) /
+// u^2 for a nearness that falls by the factor r = 1 - u.
 floatv middle_of(const floatv n0, const floatv n1) {
     const floatv r = n1 * inverse(n0), u = max((n0 - n1) * inverse(n0), 0.0f);
     const floatv series = fma(fma(fma(splat(0.2f), u, splat(0.25f)), u, splat(1.0f / 3.0f)), u, splat(0.5f));
@@ -27,8 +27,8 @@ floatv middle_of(const floatv n0, const floatv n1) {
     return r * select(exact, series, u < 0.03f);
 }
 
-// Where the ray is closer to the core than the floor of all distances the field is constant; a ray in a million. So
-// short a part has no digits left in s, but in x = slope s + offset.
+// Integrates where the ray comes closer to the core than the floor of all distances, within which the field is
+// constant: a ray in a million. So short a part has no digits left in s, only in x = slope s + offset.
 floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay, const Stretch stretch,
                   const floatv x0, const floatv x1, const uint is_square) {
     const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
@@ -49,7 +49,7 @@ floatv with_floor(const Quadratic *const distance2, const floatv floor2, const D
            without_floor(distance2, decay, after, x_end, x1, is_square);
 }
 
-// Lengths are doubled, the integral is not.
+// Integrates over a stretch. Lengths are doubled, the integral is not.
 INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distance2, const floatv floor2,
                             const Decay decay, const uint is_square) {
     const floatv x0 = fma(distance2->slope, stretch.from, distance2->offset);
@@ -61,8 +61,8 @@ INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distan
     return (is_square ? 4.0f : 2.0f) * decay.strength * over_v;
 }
 
-// The parameter s at which a ray climbs through height 0 over a plane, where a stretch ends; a ray that never does
-// stays on its side.
+// Returns the parameter s at which a ray climbs through height 0 over a plane, where a stretch ends; a ray that never
+// does stays on its side.
 INLINE floatv climbs_through(const floatv height, const floatv height_slope, const floatv end) {
     const floatv slope = select(height_slope, splat(1e-30f), fabs(height_slope) < 1e-30f);
     return clamp(-height / slope, 0.0f, end);

@@ -68,7 +68,7 @@ floatv beam_field(const beam_path *const path, const floatv s) {
     return fma(splat(path->sphere), of_tip, select(path->line * of_line, behind, height < 0.0f));
 }
 
-// Light is the integral alone; coefficients are in it.
+// Returns the integral, with the coefficients in it.
 INLINE floatv beam_integral(const Ray *const ray, const Sources *const sources, const uint index,
                             const Quadrature *const quadrature) {
     const beam_path path = beam_along(ray, sources, index);
@@ -96,7 +96,7 @@ INLINE floatv beam_integral(const Ray *const ray, const Sources *const sources, 
     return light;
 }
 
-// The line ahead of the tip, or the tip. Lengths are doubled.
+// Returns the clearance of the line ahead of the tip, or of the tip. Lengths are doubled.
 Clearance beam_clearance(const Ray *const ray, const Sources *const sources, const uint index, const float pixel_step) {
     const beam_path path = beam_along(ray, sources, index);
     const floatv s = clamp(nearest_along(&path.to_line), 0.0f, ray->end);
@@ -104,7 +104,8 @@ Clearance beam_clearance(const Ray *const ray, const Sources *const sources, con
     const Clearance of_line = quadratic_clearance(ray, &path.to_line, pixel_step);
     const Clearance of_tip = quadratic_clearance(ray, &path.to_tip, pixel_step);
     Clearance clearance = clear_by(select(of_tip.distance2, min(of_line.distance2, of_tip.distance2), ahead >= 0.0f));
-    // Where line and cap differ, light has a kink where the plane through the tip passes the begin or the end of rays.
+    // Where line and cap differ, light has a kink where the plane through the tip passes the beginning or the end of
+    // rays.
     const floatv jump = splat(!path.has_taper && path.line != path.cap ? 1.0f : 0.0f);
     clearance.seen[1] = select(splat(0.0f), jump, path.height < 0.0f);
     clearance.seen[2] = select(splat(0.0f), jump, fma(path.height_slope, ray->end, path.height) < 0.0f);

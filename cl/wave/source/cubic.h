@@ -17,7 +17,7 @@ floatv inverse_cube_root(const floatv a) {
     return y;
 }
 
-// cos(acos(x) / 3) for x in [-1,1], as a minimax polynomial in cos(acos(x) / 2): within 2e-7.
+// Returns cos(acos(x) / 3) for x in [-1,1], as a minimax polynomial in cos(acos(x) / 2): within 2e-7.
 floatv cosine_of_third(const floatv x) {
     const floatv y = 0.5f * twice_sqrt(max(fma(x, splat(0.5f), splat(0.5f)), 1e-30f));
     floatv r = splat(-0.002143448f);
@@ -29,7 +29,7 @@ floatv cosine_of_third(const floatv x) {
     return fma(r, y, splat(0.500000163f));
 }
 
-// The one real root where the discriminant h^2 + p^3 > 0: -+(A - p / A) with A^3 = |h| + sqrt(h^2 + p^3).
+// Returns the one real root where the discriminant h^2 + p^3 > 0: -+(A - p / A) with A^3 = |h| + sqrt(h^2 + p^3).
 floatv single_root(const floatv p, const floatv h, const floatv discriminant) {
     const floatv cube = fma(twice_sqrt(max(discriminant, 1e-36f)), splat(0.5f), fabs(h));
     const floatv inverse = inverse_cube_root(cube);
@@ -37,7 +37,7 @@ floatv single_root(const floatv p, const floatv h, const floatv discriminant) {
     return copysign(root, -h);
 }
 
-// The least and the greatest of three real roots, where h^2 + p^3 <= 0.
+// Finds the least and the greatest of three real roots, where h^2 + p^3 <= 0.
 void outer_roots(const floatv p, const floatv h, floatv *const least, floatv *const greatest) {
     const floatv q = max(-p, 1e-24f);
     const floatv inverse = 0.5f * twice_inverse_sqrt_(q);

@@ -1,6 +1,5 @@
 // Quadratic curve (Watanabe, Abe, Konno 2015, eq. 8-17): its struct, what it says of itself, and how clear of it a ray
-// is. The field along a ray stands in curve/field.h, where it peaks in curve/peaks.h, where a ray is cut in
-// curve/panels.h.
+// is. The field along a ray is in curve/field.h, where it peaks in curve/peaks.h, where a ray is cut in curve/panels.h.
 #pragma once
 #include "../quadrature/quadrature.h"
 #include "../tiles/clearance.h"
@@ -40,7 +39,7 @@ CHECK_SIZE(Curve, SIZEOF_CURVE);
 #include "curve/panels.h"
 #include "curve/peaks.h"
 
-// Both closest approaches of the ray's line, where the ray has them. Lengths are doubled.
+// Returns the clearance of both closest approaches of the ray's line, where the ray has them. Lengths are doubled.
 Clearance curve_clearance(const Ray *const ray, const Sources *const sources, const uint index,
                           const float pixel_step) {
     const curve_peaks peaks = curve_peaks_along(ray, sources, index);

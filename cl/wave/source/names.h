@@ -10,7 +10,7 @@
 #define KIND_integral JOIN(KIND, _integral)
 #define KIND_clearance JOIN(KIND, _clearance)
 
-// What a kind says of itself: #define curve_has_kinks 1. Whoever says nothing has not.
+// What a kind says of itself: #define curve_has_kinks 1. A kind that says nothing does not have it.
 #define KIND_HAS(what) JOIN(KIND, _has_##what)
 
 // What a kind without closed form has for the adaptive quadrature (../quadrature/adaptive.h).
@@ -21,7 +21,7 @@
 #define KIND_approach JOIN(KIND, _approach)
 #define KIND_near_field JOIN(KIND, _near_field)
 
-// What it has besides if it says so.
+// What it has in addition, if it says so.
 #define KIND_look_ahead JOIN(KIND, _look_ahead) // KIND_HAS(look_ahead)
 #define KIND_closed JOIN(KIND, _closed)         // KIND_HAS(closed_ends)
 #define KIND_is_uneven JOIN(KIND, _is_uneven)   // KIND_HAS(dark_parts)

@@ -1,5 +1,5 @@
 // How a field falls off with the distance to its core: 1 over the distance, or over its square (Sakai 2006). Only
-// scenes that have squares are built with them.
+// programs for scenes with inverse squares contain them.
 #pragma once
 #include "../../lanes.h"
 
@@ -9,7 +9,7 @@
 #define IS_SQUARE(source) 0u
 #endif
 
-// The field, from 1 over the distance.
+// Returns the field, from 1 over the distance.
 floatv profiled(const floatv per_distance, const uint is_square) {
     return is_square ? per_distance * per_distance : per_distance;
 }

@@ -11,7 +11,7 @@ typedef struct {
     floatv least; // never 0: its root may be divided by
 } Quadratic;
 
-// |start + s span|^2 for a span of length `slope`.
+// Returns |start + s span|^2 for a span of length `slope`.
 INLINE Quadratic squared_length_along(const float3v start, const float3v span, const floatv slope) {
     const floatv per_slope = inverse(slope);
     const floatv ahead = -dot3(start, span) * per_slope; // to the nearest point, a length
@@ -20,8 +20,8 @@ INLINE Quadratic squared_length_along(const float3v start, const float3v span, c
     return q;
 }
 
-// The squared length of what stands at the parameter of the least, which float32 has missed by a little: without what
-// lies along the span. Never 0.
+// Returns the squared length of the vector at the parameter of the least, which float32 has missed by a little, without
+// its part along the span. Never 0.
 floatv squared_length_beside(const Quadratic *const q, const float3v start, const float3v span) {
     const floatv per_slope = inverse(q->slope);
     const floatv missed = clamp(-dot3(start, span) * per_slope * per_slope, -1e-4f, 1e-4f);
@@ -33,12 +33,12 @@ floatv length3(const float3v v) {
     return 0.5f * twice_sqrt(max(dot3(v, v), 1e-36f));
 }
 
-// The parameter s of the least.
+// Returns the parameter s of the least.
 floatv nearest_along(const Quadratic *const q) {
     return -q->offset * inverse(q->slope);
 }
 
-// The same with all lengths doubled, softened.
+// Returns the same with all lengths doubled, softened.
 Quadratic doubled(const Quadratic q, const floatv softening2) {
     const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, 4.0f * (q.least + softening2)};
     return d;
@@ -49,7 +49,7 @@ floatv quadratic_at(const Quadratic *const q, const floatv s) {
     return fma(x, x, q->least);
 }
 
-// From a ray to a point.
+// Returns the squared distance from a ray to a point.
 INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, const float4 point_rest) {
     const float3v from_point = subtract3(ray->origin, uniform3(point));
     Quadratic distance2 = squared_length_along(from_point, ray->span, ray->length);
@@ -58,8 +58,8 @@ INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, co
     return doubled(distance2, ray->softening2);
 }
 
-// From a ray to a line: that of P is |(P - M) x D|, a cross product instead of the difference of squares that Watanabe,
-// Abe, Konno 2015, eq. 3 prints, which cancels near the line.
+// Returns the squared distance from a ray to a line. The distance of P is |(P - M) x D|, a cross product instead of the
+// difference of squares that Watanabe, Abe, Konno 2015, eq. 3 prints, which cancels near the line.
 INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, const float4 point_rest,
                                    const float4 direction, const float4 direction_rest) {
     const float3v along = uniform3(direction);

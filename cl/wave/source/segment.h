@@ -80,7 +80,7 @@ INLINE floatv segment_integral(const Ray *const ray, const Sources *const source
            integral_over(evenly_lit(end, ray->end), &to_far, path.floor2, decay, path.is_square);
 }
 
-// The line where the ray passes between the ends, or else the nearer end. Lengths are doubled.
+// Returns the clearance of the line where the ray passes between the ends, else of the nearer end. Lengths are doubled.
 Clearance segment_clearance(const Ray *const ray, const Sources *const sources, const uint index,
                             const float pixel_step) {
     const segment_path path = segment_along(ray, sources, index);

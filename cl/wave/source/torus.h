@@ -142,7 +142,7 @@ INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv bas
     return near;
 }
 
-// The two that are small differences close to the ring.
+// Refines the two values that are small differences close to the ring.
 INLINE void torus_near_refine(const torus_peaks *const peaks, const floatv base, torus_near *const near) {
     __global const Torus *const torus = peaks->torus;
     const fine3v from_center = fine_between(peaks->ray, base, torus->center, torus->center_rest);
@@ -211,7 +211,7 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     return near;
 }
 
-// The field at s = base + x: 1 / sqrt((rho - R)^2 + z^2) with rho - R = (rho^2 - R^2) / (rho + R).
+// Returns the field at s = base + x: 1 / sqrt((rho - R)^2 + z^2) with rho - R = (rho^2 - R^2) / (rho + R).
 INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv across = fma(near->across_slope, x, near->across);
     const floatv sum = twice_sqrt_less(fma(across, across, near->rho2_least), splat(-near->major_radius));

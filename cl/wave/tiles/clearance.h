@@ -13,7 +13,8 @@ typedef struct {
                               // point lies, in pieces of a local intensity; 0 where there is none
 } Clearance;
 
-// A squared distance from the point s of the ray, in pixels; `pixel_step` is the side of one on the projection plane.
+// Returns a squared distance from the point s of the ray, in pixels; `pixel_step` is the side of one on the projection
+// plane.
 floatv in_pixels2(const Ray *const ray, const float pixel_step, const floatv s, const floatv distance2) {
     const floatv side = pixel_step * fma(ray->stretch, s, splat(1.0f));
     return distance2 * inverse(side * side);
@@ -24,13 +25,13 @@ Clearance clear_by(const floatv distance2) {
     return clearance;
 }
 
-// Lengths are doubled.
+// Returns the clearance of a quadratic squared distance. Lengths are doubled.
 Clearance quadratic_clearance(const Ray *const ray, const Quadratic *const distance2, const float pixel_step) {
     const floatv s = clamp(nearest_along(distance2), 0.0f, ray->end);
     return clear_by(in_pixels2(ray, pixel_step, s, 0.25f * quadratic_at(distance2, s)));
 }
 
-// The distance of a peak from the ray, which it has in the complex plane.
+// Returns the squared distance of a peak from the ray, where it lies in the complex plane.
 floatv peak_clearance2(const Ray *const ray, const Peak peak, const float pixel_step) {
     const floatv s = clamp(peak.re, 0.0f, ray->end);
     const floatv beyond = peak.re - s;

@@ -24,7 +24,7 @@ typedef struct {
     uint width, columns, rows;
 } TileDepths;
 
-// LANES consecutive depths of a row; the tile's last one stands for those beyond.
+// Loads LANES consecutive depths of a row; the tile's last one stands for those beyond.
 floatv depths_from(const TileDepths *const depths, const uint x, const uint y) {
     __global const float *const row = depths->corner + y * depths->width;
     if (x + LANES <= depths->columns)
@@ -62,7 +62,7 @@ Cubic cubic_through(const float q, const floatv v0, const floatv v1, const float
     return cubic;
 }
 
-// By how much depths differ from the polynomial through the nodes', at most; in this work-item's rows.
+// Returns by how much depths differ from the polynomial through the nodes', at most, in this work-item's rows.
 INLINE floatv error_of_depths(const TilePass *const pass, const TileDepths *const depths,
                               __local const float *const nodes) {
     floatv error = splat(0.0f);
@@ -99,7 +99,7 @@ DepthScale depth_scale(const View *const view, const Ray *const ray) {
     return scale;
 }
 
-// The least of what the work-items of a group show for their rays.
+// Returns the least of what the work-items of a group show for their rays.
 float least_shown(const floatv value, __local float *const values) {
     meet();
     for (uint round = 0; round < TILE_ROUNDS; ++round)

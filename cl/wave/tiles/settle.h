@@ -3,14 +3,15 @@
 // all others.
 
 #ifdef DEPTH
-// The field where the ray ends.
+// Returns the field where the ray ends.
 INLINE floatv KIND_at_end(const Ray *const ray, const Sources *const sources, const uint index) {
     const KIND_path path = KIND_along(ray, sources, index);
     return KIND_field(&path, ray->end);
 }
 #endif
 
-// The light of one source at the nodes of a tile, given to the tile's light if it is smooth there. Whether it is.
+// Adds the light of one source at the nodes of a tile to the tile's light if it is smooth there, and returns whether it
+// is.
 INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, const float end_error, const uint index,
                         __local TileMemory *const memory, uint *const integrals) {
     meet();

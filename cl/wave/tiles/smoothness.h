@@ -3,12 +3,12 @@
 #include "clearance.h"
 #include "tile.h"
 
-// Closer to a core than this many times a tile's side its light is taken for rough without a look.
+// Within this many times a tile's side from a core, its light counts as rough without a look.
 #ifndef LEAST_CLEARANCE
 #define LEAST_CLEARANCE 0.5f
 #endif
 
-// Whether 16 shared numbers are all numbers, and none is above 0.
+// Returns whether 16 shared numbers are all numbers, and none is above 0.
 bool none_is_positive(__local const float *const values) {
     bool none_is = true;
     for (uint ray = 0; ray < TILE_RAYS; ray += LANES)
@@ -33,12 +33,12 @@ bool all_see_one_part(__local float (*const seen)[TILE_RAYS]) {
     return most <= MOST_SPREAD;
 }
 
-// What an interpolation may be off by where it is tested; a test of the test gives up on it.
+// By how much an interpolation may be off where it is tested; spoiled builds redefine it.
 #ifndef MOST_ERROR
 #define MOST_ERROR(pass) ((pass)->most_error)
 #endif
 
-// How much the light at an end counts that differs from what the nodes tell; a test of the test gives up on it.
+// How much the light at an end counts that differs from what the nodes tell; spoiled builds redefine it.
 #ifndef END_ERROR_WEIGHT
 #define END_ERROR_WEIGHT 1.0f
 #endif
@@ -60,8 +60,8 @@ Coefficients highest_coefficients(const float q, const float4 v0, const float4 v
     return c;
 }
 
-// Whether values at the nodes look like those of a function that can be interpolated: the highest coefficients are
-// small beside the least value. Never where a value is not a number.
+// Returns whether values at the nodes look like those of a function that can be interpolated: the highest coefficients
+// are small beside the least value. Never where a value is not a number.
 bool seems_smooth(const TilePass *const pass, __local const float *const values) {
     const float4 v0 = vload4(0, values), v1 = vload4(1, values), v2 = vload4(2, values), v3 = vload4(3, values);
     const float4 sizes = min(min(fabs(v0), fabs(v1)), min(fabs(v2), fabs(v3)));

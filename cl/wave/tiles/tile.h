@@ -19,12 +19,12 @@
 #define meet()
 #endif
 
-// Its place in the image, pixels.
+// A tile's place in the image, pixels.
 typedef struct {
     uint column, row;
 } Tile;
 
-// The first of the rays that this work-item takes in a round.
+// Returns the first of the rays that this work-item takes in a round.
 uint first_ray(const uint round) {
     return (round * TILE_WORKERS + (uint)get_local_id(0)) * LANES;
 }
@@ -46,14 +46,14 @@ floatv shown(const uint ray, __local const float *const values) {
 #endif
 }
 
-// Pixel of a node in its row or column.
+// Returns the pixel of a node in its row or column.
 uintv node_place(const TilePass *const pass, const uintv node) {
     const uintv from_begin = (node & 1u) * pass->inner, from_end = ((node + 1u) & 1u) * pass->inner;
     return select(from_begin, pass->size - 1u - from_end, node > 1u);
 }
 
-// Column (turn 1) or row (turn 7) of a point where the interpolation is put to the test: no two share either, so that
-// no stripe passes between them.
+// Returns the column (turn 1) or row (turn 7) of a point where the interpolation is put to the test: no two share
+// either, so that no stripe passes between them.
 uintv test_place(const TilePass *const pass, const uintv ray, const uint turn) {
     const uintv sixteenth = (ray * turn + (turn >> 1u)) % TILE_RAYS;
     return pass->size * (2u * sixteenth + 1u) / (2u * TILE_RAYS);
@@ -78,7 +78,7 @@ INLINE Basis basis_at(const TilePass *const pass, const uintv place) {
     return basis;
 }
 
-// Values at the nodes, by rows, taken down to one row of four.
+// Interpolates values at the nodes, by rows, down to one row of four.
 INLINE void interpolate_down(__local const float *const values, const Basis *const down, floatv row[NODES_A_SIDE]) {
 #pragma unroll
     for (uint j = 0; j < NODES_A_SIDE; ++j) {
@@ -124,8 +124,7 @@ INLINE TileRays rays_of_tile(const Screen *const screen, const TilePass *const p
     return rays;
 }
 
-// Writes (or adds to) the pixels of a block from the ray of this number on; the image has so many columns and rows of
-// it.
+// Writes (or adds to) the pixels of a block from this ray on; the image has `columns` columns and `rows` rows of it.
 INLINE void store_block(const FilmPart *const part, const uint corner, const uint ray, const uint columns,
                         const uint rows, const float3v color, FILM_PARAMETER) {
 #ifdef STORES_WHOLE

@@ -36,7 +36,7 @@ typedef struct {
     __global float *light;
 } OpenTiles;
 
-// Red, green and blue of some rays of a tile.
+// Shows the group red, green and blue of some rays of a tile.
 void show_light(const float3v light, const uint ray, __local float *const all) {
     show(light.x, ray, all);
     show(light.y, ray, all + TILE_RAYS);
@@ -50,12 +50,12 @@ void add_light(const float4 emission, const floatv integral, const uint ray, __l
 
 #include "settle.h" // sphere_settle and so on
 
-// A bit for each of the sources that are left, at most 32.
+// Returns a bit for each of the sources that are left, at most 32.
 uint first_bits(const uint left) {
     return left < 32u ? (1u << left) - 1u : ~0u;
 }
 
-// Number of the lowest bit.
+// Returns the number of the lowest bit.
 uint lowest_bit(const uint bits) {
     return 31u - clz(bits & -bits);
 }
@@ -76,7 +76,7 @@ uint lowest_bit(const uint bits) {
         is_open |= open;                                                                                               \
     }
 
-// Whether any source is not smooth on the tile.
+// Settles the sources on the tile, and returns whether any is not smooth there.
 INLINE bool settle_sources(const TileTask *const task, const Tile *const tile, __global const uint *const parent_open,
                            __local TileMemory *const memory) {
     const Launch *const launch = task->launch;
@@ -101,7 +101,7 @@ INLINE bool settle_sources(const TileTask *const task, const Tile *const tile, _
         }                                                                                                              \
     }
 
-// The light of all sources that stayed open, along a ray.
+// Returns the light of all sources that stayed open, along a ray.
 INLINE float3v open_light_along(const TileTask *const task, const Ray *const ray,
                                 __local const TileMemory *const memory, uint *const integrals) {
     const Launch *const launch = task->launch;
@@ -143,7 +143,8 @@ INLINE void paint_tile(const TileTask *const task, const Tile *const tile, const
     atomic_add(task->quadrature->counts + COUNT_INTEGRALS, integrals);
 }
 
-// The light of all sources that are smooth on the tile that this one is a quarter of, at the nodes of this one.
+// Takes over the light of all sources that are smooth on the tile that this one is a quarter of, at the nodes of this
+// one.
 INLINE void inherit_light(const TilePass *const pass, const Tile *const tile, const Tile *const parent,
                           __local float *const light) {
     TilePass of_parent = *pass;

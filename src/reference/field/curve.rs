@@ -1,5 +1,5 @@
-//! The quadratic curve in float64: nearest point by bracketed Newton steps on the monotone stretches of the cubic (2015,
-//! eq. 11, 12, corrected), local intensity by de Boor's recursion (eq. 14-17). Neither is the kernels' method.
+//! The quadratic curve in float64: nearest point by bracketed Newton steps on the monotone stretches of the cubic
+//! (2015, eq. 11, 12, corrected), local intensity by de Boor's recursion (eq. 14-17). Neither is the kernels' method.
 
 use glam::DVec3;
 
@@ -32,7 +32,8 @@ impl CurveField {
         (self.c2 * t + self.c1) * t + self.c0
     }
 
-    /// Finds the parameter of the nearest point, the least one where several are equally near, and its squared distance.
+    /// Finds the parameter of the nearest point, the least one where several are equally near, and its squared
+    /// distance.
     pub fn nearest(&self, point: DVec3) -> (f64, f64) {
         // A folded curve runs twice through the same points: rounding must not choose between them.
         let tie = 1e-12 * (self.c1.length() + self.c2.length()).powi(2);
@@ -50,8 +51,8 @@ impl CurveField {
         (nearest.0, least)
     }
 
-    /// Where along the ray the nearest point jumps: looked for between all breaks, closely beside each, where no node of a
-    /// quadrature would see it.
+    /// Finds where along the ray the nearest point jumps, also closely beside each break, where no node of a quadrature
+    /// would see it.
     fn jumps(&self, ray: &Ray, breaks: &[f64]) -> Vec<f64> {
         const SHARES: [f64; 13] = [
             1e-8,
@@ -125,8 +126,8 @@ impl Field for CurveField {
         }
     }
 
-    /// Where the ray passes closest to the curve and to its ends (seen along the ray the curve is a plane parabola), and
-    /// where it enters the reach of the ends: the planes through them, perpendicular to the curve.
+    /// Adds where the ray passes closest to the curve and to its ends (seen along the ray the curve is a plane
+    /// parabola), and where it enters the reach of the ends: the planes through them, perpendicular to the curve.
     fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>) {
         let direction = ray.span.normalize();
         let flat = |v: DVec3| v - direction * v.dot(direction);
@@ -168,7 +169,8 @@ fn stationary(c2: DVec3, c1: DVec3, c0: DVec3, offer: &mut impl FnMut(f64)) {
     }
 }
 
-/// Roots of the cubic's derivative `3 a t^2 + 2 b t + c`, ordered and clamped to `[0,1]`; 0 and 0 if there are none.
+/// Returns the roots of the cubic's derivative `3 a t^2 + 2 b t + c`, ordered and clamped to `[0,1]`; 0 and 0 if there
+/// are none.
 fn turning_points(a: f64, b: f64, c: f64) -> [f64; 2] {
     let discriminant = b * b - 3.0 * a * c;
     if discriminant <= 0.0 {
@@ -180,7 +182,8 @@ fn turning_points(a: f64, b: f64, c: f64) -> [f64; 2] {
     [clamp(first.min(second)), clamp(first.max(second))]
 }
 
-/// The root of a function that changes its sign once in [from, to]: Newton steps, halving where they leave the bracket.
+/// Finds the root of a function that changes its sign once in [from, to]: Newton steps, halving where they leave the
+/// bracket.
 fn bracketed_root(
     function: &impl Fn(f64) -> f64,
     slope: &impl Fn(f64) -> f64,
@@ -210,7 +213,8 @@ fn bracketed_root(
     t
 }
 
-/// The clamped uniform quadratic B-spline `S(t)` with weights `series` at t in `[0,1]`, by de Boor's recursion.
+/// Evaluates the clamped uniform quadratic B-spline `S(t)` with weights `series` at t in `[0,1]`, by de Boor's
+/// recursion.
 pub fn b_spline(series: &[f64], t: f64) -> f64 {
     const DEGREE: usize = 2;
     let spans = series.len() - DEGREE;

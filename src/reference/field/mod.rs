@@ -9,7 +9,7 @@ macro_rules! field_modules {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         $(mod $kind;)*
 
-        /// Every source of a scene, part by part.
+        /// Lists every source of a scene, part by part.
         pub fn sources(scene: &Scene) -> Vec<Source> {
             let mut sources = Vec::with_capacity(scene.source_count());
             $(for source in &scene.$list {
@@ -53,7 +53,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// A part with all of a source's light.
+    /// Makes a part with all of a source's light.
     fn new(field: impl Field + 'static, light: Light) -> Self {
         Self {
             field: Box::new(field),
@@ -69,7 +69,7 @@ trait Parts {
     fn add_parts(&self, add: &mut dyn FnMut(Source));
 }
 
-/// A sample of a core that is everywhere as bright.
+/// Makes the sample of a core that is equally bright everywhere.
 fn even(distance2: f64) -> Sample {
     Sample {
         distance2,
@@ -77,14 +77,14 @@ fn even(distance2: f64) -> Sample {
     }
 }
 
-/// The parameter s at which a ray is nearest to a line; not a number if they are parallel.
+/// Returns the parameter s at which a ray is nearest to a line; not a number if they are parallel.
 fn nearest_to_line(ray: &Ray, point: DVec3, direction: DVec3) -> f64 {
     let across = |v: DVec3| v.cross(direction);
     let span = across(ray.span);
     across(point - ray.origin).dot(span) / span.length_squared()
 }
 
-/// The parameter s at which a ray crosses a plane (2010, eq. 10); not finite if they are parallel.
+/// Returns the parameter s at which a ray crosses a plane (2010, eq. 10); not finite if they are parallel.
 fn crossing(ray: &Ray, point: DVec3, normal: DVec3) -> f64 {
     (point - ray.origin).dot(normal) / ray.span.dot(normal)
 }

@@ -40,7 +40,8 @@ impl Field for FiniteLine {
         even(from_begin.distance_squared(nearest))
     }
 
-    /// Where the ray passes the ends and the line between them, and the planes in which the nearest point leaves an end.
+    /// Adds where the ray passes the ends and the line between them, and the planes in which the nearest point leaves
+    /// an end.
     fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>) {
         let to = self.from + self.span;
         breaks.extend([ray.nearest_to(self.from), ray.nearest_to(to)]);

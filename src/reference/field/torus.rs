@@ -34,8 +34,8 @@ impl Field for Circle {
         even(DVec2::new(from_axis - self.radius, height).length_squared())
     }
 
-    /// Least distances to the ring, and the kink beside its axis. Every least distance lies where the ray passes
-    /// alongside the ring's bounding ball: beyond, all of the ring falls behind.
+    /// Adds where the ray is closest to the ring, and the kink beside its axis. Every least distance lies where the ray
+    /// passes alongside the ring's bounding ball: beyond, all of the ring falls behind.
     fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>) {
         const CELLS: usize = 64;
         let distance2 = |s: f64| self.sample(ray.at(s)).distance2;
@@ -56,7 +56,7 @@ impl Field for Circle {
     }
 }
 
-/// Golden-section search for the least value of a function with one minimum in [from, to].
+/// Finds where a function with one minimum in [from, to] is least, by golden-section search.
 fn least(function: &impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let mut left = to - GOLDEN * (to - from);

@@ -46,7 +46,7 @@ pub(super) fn write(scene: &Scene) -> Result<String> {
     serde_json::to_string_pretty(scene).map_err(|error| Error::Unsupported(error.to_string()))
 }
 
-/// serde_json ends its messages with a position that stands at the front of ours.
+/// Cuts off the position with which serde_json ends its messages: ours stands at the front.
 fn without_position(message: &str) -> &str {
     message.split(" at line ").next().unwrap_or(message)
 }

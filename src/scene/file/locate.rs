@@ -26,7 +26,7 @@ impl KeyMap {
         Self { entries }
     }
 
-    /// Byte offset at which the value of `path` stands, or that of the nearest key that encloses it.
+    /// Returns the byte offset at which the value of `path` stands, or that of the nearest key that encloses it.
     pub(super) fn offset_of(&self, path: &str) -> Option<usize> {
         self.entries
             .iter()
@@ -35,7 +35,7 @@ impl KeyMap {
             .map(|entry| entry.value.start)
     }
 
-    /// The innermost key that encloses a byte range, with its value or by its name.
+    /// Returns the innermost key that encloses a byte range, with its value or by its name.
     pub(super) fn path_at(&self, range: &Range<usize>) -> Option<&str> {
         let encloses =
             |outer: &Range<usize>| outer.contains(&range.start) && range.end <= outer.end;
@@ -79,7 +79,7 @@ fn collect_value(
     });
 }
 
-/// Line and column of a byte offset, both counted from 1; columns count characters.
+/// Returns line and column of a byte offset, both counted from 1; columns count characters.
 pub(super) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

@@ -22,7 +22,7 @@ type Adjust<'a> = &'a mut dyn FnMut(&mut Scene, &MethodKeys) -> Result<()>;
 
 macro_rules! define_scene_file {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
-        /// A scene as a file has it.
+        /// A scene as a file describes it.
         #[derive(Deserialize, Serialize)]
         #[serde(deny_unknown_fields)]
         struct SceneFile {
@@ -41,7 +41,7 @@ macro_rules! define_scene_file {
         }
 
         impl SceneFile {
-            /// The scene without its depth image.
+            /// Returns the scene without its depth image.
             fn scene(&mut self) -> Scene {
                 Scene {
                     camera: self.camera.clone(),
@@ -54,7 +54,7 @@ macro_rules! define_scene_file {
                 }
             }
 
-            /// A scene as it is written.
+            /// Makes a file's scene as it is written.
             fn of(scene: &Scene, depth: Option<DepthTable>) -> Self {
                 Self {
                     camera: scene.camera.clone(),
@@ -123,7 +123,7 @@ impl Default for IntegrationTable {
     }
 }
 
-/// What `[integration]` of a file says of either method, whichever it chooses, or what it leaves at its default.
+/// What `[integration]` of a file says of either method, whichever it chooses; the default where it says nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct MethodKeys {
@@ -225,9 +225,9 @@ impl Scene {
         Self::from_file_with(path, |_, _| Ok(()))
     }
 
-    /// Like [`Scene::from_file`]; `adjust` may change the scene, which is then checked again. It also hears what the file
-    /// says of the method that it does not choose. A depth image that it gives takes the place of the file's, which is
-    /// then not read.
+    /// Like [`Scene::from_file`]; `adjust` may change the scene, which is then checked again. It is also told what the
+    /// file says of the method that it does not choose. A depth image that it gives takes the place of the file's,
+    /// which is then not read.
     ///
     /// # Errors
     /// As [`Scene::from_file`], and those of `adjust`.
@@ -300,7 +300,7 @@ fn read_text(path: &Path) -> Result<String> {
     )))
 }
 
-/// A fault of syntax, type or key name, as the TOML reader found it.
+/// Makes the fault of syntax, type or key name that the TOML reader found.
 fn toml_fault(text: &str, error: &toml::de::Error) -> SceneError {
     if text.trim().is_empty() {
         return empty_file();
@@ -342,7 +342,7 @@ fn empty_file() -> SceneError {
     }
 }
 
-/// "missing field `x`" in table `key` becomes a fault of `key.x`.
+/// Turns "missing field `x`" in table `key` into a fault of `key.x`.
 fn name_missing(key: String, message: String) -> (String, String) {
     let field = message
         .strip_prefix("missing field `")
@@ -356,7 +356,7 @@ fn name_missing(key: String, message: String) -> (String, String) {
     (key, "required, but missing".to_owned())
 }
 
-/// serde speaks of Rust types; a scene's author thinks of numbers.
+/// Puts a message into plain words: serde speaks of Rust types, a scene's author thinks of numbers.
 fn plain_words(message: &str) -> String {
     message
         .trim()

@@ -28,12 +28,12 @@ pub struct Beam {
     pub profile: Profile,
 }
 
-/// What glows behind the tip of a beam. In files `cap_coefficient` or `taper_length`, or neither for a cap as bright as the
-/// line.
+/// What glows behind the tip of a beam. In files `cap_coefficient` or `taper_length`, or neither for a cap as bright as
+/// the line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BeamEnd {
-    /// `1/d` with d the distance to the tip, of this coefficient; `None`: the line's, without a jump between them (2010,
-    /// eq. 11).
+    /// `1/d` with d the distance to the tip, of this coefficient; `None`: the line's, without a jump between them
+    /// (2010, eq. 11).
     Cap(Option<f64>),
     /// The line's own field, falling linearly to 0 over this length behind the tip, world units (Sakai 2006, fig. 4.3).
     Taper(f64),
@@ -54,7 +54,7 @@ impl Beam {
         }
     }
 
-    /// The coefficient of the sphere behind the tip; 0 where there is a taper instead.
+    /// Returns the coefficient of the sphere behind the tip; 0 where there is a taper instead.
     pub(crate) fn cap(&self) -> f64 {
         match self.end {
             BeamEnd::Cap(coefficient) => coefficient.unwrap_or(self.coefficient),
@@ -62,7 +62,7 @@ impl Beam {
         }
     }
 
-    /// The length of the taper behind the tip, if there is one.
+    /// Returns the length of the taper behind the tip, if there is one.
     pub(crate) fn taper_length(&self) -> Option<f64> {
         match self.end {
             BeamEnd::Cap(_) => None,
@@ -116,7 +116,7 @@ impl SourceKind for Beam {
     }
 }
 
-/// A beam as files have it.
+/// A beam as a file describes it.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct BeamTable {

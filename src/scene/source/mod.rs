@@ -37,7 +37,7 @@ pub(crate) struct Light {
 }
 
 impl Light {
-    /// Colour times coefficient, linear RGB.
+    /// Returns colour times coefficient, linear RGB.
     pub(crate) fn emission(&self) -> DVec3 {
         self.color * self.coefficient
     }
@@ -45,10 +45,10 @@ impl Light {
 
 /// What every kind of source says of itself.
 pub(crate) trait SourceKind {
-    /// Checks its values; `brightness` tells which light float32 holds.
+    /// Checks its values; `brightness` tells which light float32 can hold.
     fn check(&self, brightness: &Brightness) -> Checked;
 
-    /// Its light as a whole.
+    /// Returns its light as a whole.
     fn light(&self) -> Light;
 
     /// Calls `add` with the emission of each of its parts, where some may be of another sign.
@@ -56,7 +56,7 @@ pub(crate) trait SourceKind {
         add(self.light().emission());
     }
 
-    /// A source of this kind at about `place`, for the self-test of kernels.
+    /// Makes a source of this kind at about `place`, for the self-test of kernels.
     fn specimen(place: DVec3, profile: Profile) -> Self;
 }
 
@@ -100,7 +100,7 @@ impl Brightness {
     }
 }
 
-/// The name of an item of a list in a file, such as `intensity[3]`.
+/// Returns the name of an item of a list in a file, such as `intensity[3]`.
 fn item(list: &str, index: usize) -> Cow<'static, str> {
     format!("{list}[{index}]").into()
 }

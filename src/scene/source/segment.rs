@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::{Brightness, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, read_vector, vector};
 
-/// A finite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point between its ends. Ends
-/// that coincide make a point.
+/// A finite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point between its ends.
+/// Ends that coincide make a point.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Segment {

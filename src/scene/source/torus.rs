@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::{Brightness, Light, Profile, SourceKind, one, plus_z, white};
 use crate::scene::values::{Checked, direction, positive, read_vector, vector};
 
-/// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle (2015,
-/// eq. 7).
+/// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle
+/// (2015, eq. 7).
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Torus {

@@ -109,8 +109,9 @@ fn curve(
     }
 }
 
-/// The polynomial pieces of the clamped uniform quadratic B-spline (2015, eq. 14-16): each is a quadratic Bezier whose
-/// inner control value is the weight, and whose ends are the means of two weights, or an end weight itself.
+/// Returns the polynomial pieces of the clamped uniform quadratic B-spline (2015, eq. 14-16): each is a quadratic
+/// Bezier whose inner control value is the weight, and whose ends are the means of two weights, or an end weight
+/// itself.
 fn spline_pieces(series: &[f64]) -> impl Iterator<Item = SplinePiece> {
     let last = series.len() - 1;
     let joint = move |i: usize| match i {

@@ -1,7 +1,7 @@
 //! A scene as the kernels read it: float32, seen from the eye, where float32 resolves best.
 //!
-//! Light near a core depends on small differences of large coordinates: what float32 leaves of a number travels in a field
-//! named `rest` (`cl/fine.h`).
+//! Light near a core depends on small differences of large coordinates: what float32 leaves of a number travels in a
+//! field named `rest` (`cl/fine.h`).
 
 pub mod layout;
 mod view;
@@ -27,7 +27,7 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// Seen from `origin`, for rays that stay within `reach` of it and are `ray_length` long.
+    /// Makes the anchor at `origin`, for rays that stay within `reach` of it and are `ray_length` long.
     pub fn new(scene: &Scene, origin: DVec3, reach: f64, ray_length: f64) -> Self {
         let measure = match scene.integration.measure {
             Measure::Length => ray_length,
@@ -88,7 +88,7 @@ macro_rules! define_sources {
                 )*
             }
 
-            /// How many there are of each kind, in the order of the table.
+            /// Returns how many there are of each kind, in the order of the table.
             pub fn counts(&self) -> [u64; KIND_COUNT] {
                 [$(self.$list.len() as u64),*]
             }
@@ -122,14 +122,14 @@ impl PackedSources {
         stamp
     }
 
-    /// What the kernels depend on.
+    /// Returns the facts that the kernels depend on.
     pub fn facts(&mut self, scene: &Scene) -> &SourceFacts {
         self.facts.update(scene);
         &self.facts
     }
 }
 
-/// What can only be told by a look at every source; looked at again only if they changed.
+/// What only a look at every source can tell; they are looked at again only if they changed.
 #[derive(Debug, Clone, Default)]
 pub struct SourceFacts {
     stamp: Option<SourcesStamp>,
@@ -153,7 +153,7 @@ impl SourceFacts {
     }
 }
 
-/// A line's point nearest to the eye, and its direction.
+/// Returns a line's point nearest to the eye, and its direction.
 fn line(anchor: &Anchor, point: DVec3, direction: DVec3) -> (Fine, Fine) {
     let direction = direction.normalize();
     let to_eye = anchor.origin - point;
@@ -180,7 +180,7 @@ fn fine(v: DVec3) -> Fine {
     }
 }
 
-/// What float32 leaves of a number.
+/// Returns what float32 leaves of a number.
 fn rest(value: f64) -> f32 {
     (value - f64::from(value as f32)) as f32
 }

@@ -9,10 +9,10 @@ use crate::image::{DepthAlong, DepthImage};
 use crate::scene::{Ray, Scene, ViewPlane};
 use crate::wave::Rule;
 
-/// A little less than float32 may say hides all of a ray.
+/// The share by which a depth must fall short of the projection plane to hide all of a ray for certain, in float32.
 const MARGIN: f64 = 1e-5;
 
-/// The view plane, and what depths are lengths of.
+/// Packs the view plane, and what depths are measured along.
 pub fn view(plane: &ViewPlane, scene: &Scene) -> View {
     let [first_pixel, column_step, row_step] =
         [plane.first_pixel, plane.column_step, plane.row_step].map(fine);
@@ -37,7 +37,7 @@ pub fn view(plane: &ViewPlane, scene: &Scene) -> View {
     }
 }
 
-/// What is integrated, by a rule or by so many nodes.
+/// Packs what is integrated, by a rule or by this many nodes.
 pub fn integrand(scene: &Scene, rule: &Rule, node_count: u32) -> Integrand {
     let softening = scene.integration.softening;
     Integrand {
@@ -52,7 +52,7 @@ pub fn integrand(scene: &Scene, rule: &Rule, node_count: u32) -> Integrand {
     }
 }
 
-/// A ray, its origin seen from `origin`.
+/// Packs a ray, its origin seen from `origin`.
 pub fn ray(ray: &Ray, origin: DVec3) -> RayRecord {
     let (origin, span) = (fine(ray.origin - origin), fine(ray.span));
     RayRecord {

@@ -92,19 +92,19 @@ INLINE curve_offset offset_from_curve(const curve_path *const path, const curve_
     return offset;
 }
 
-// Squared distance to C(1/2 + x), without softening.
+// Returns the squared distance to C(1/2 + x), without softening.
 INLINE floatv curve_distance2(const curve_path *const path, const curve_point *const point, const floatv x) {
     const curve_offset offset = offset_from_curve(path, point, x);
     return fma(offset.along, offset.along, fma(offset.across, offset.across, point->normal * point->normal));
 }
 
-// Across component of C'(1/2 + x); the one along is velocity_along.
+// Returns the across component of C'(1/2 + x); the one along is velocity_along.
 floatv curve_velocity_across(const curve_path *const path, const floatv x) {
     return fma(splat(2.0f * path->bend), x, splat(path->velocity_across));
 }
 
-// Nearest point of a curve that is all but straight: the foot on the tangent at the core point, corrected for the bend
-// by Newton steps; or an end, where the curve turns away.
+// Finds the nearest point of a curve that is all but straight: the foot on the tangent at the core point, corrected for
+// the bend by Newton steps; or an end, where the curve turns away.
 floatv nearest_on_straight(const curve_path *const path, const curve_point *const point, floatv *const distance2) {
     const floatv to_foot = fma(point->along, path->velocity_along, point->across * path->velocity_across);
     floatv x = clamp(fma(to_foot, path->inverse_speed2, point->core), -0.5f, 0.5f);
@@ -123,7 +123,7 @@ floatv nearest_on_straight(const curve_path *const path, const curve_point *cons
     return x;
 }
 
-// Where the cubic has three real roots.
+// Returns where the cubic has three real roots.
 INLINE intv has_three_roots(const floatv p, const floatv h) {
     return fma(p * p, p, h * h) <= 0.0f;
 }
@@ -139,8 +139,8 @@ INLINE RootCounts roots_at(const curve_point *const point) {
     return counts;
 }
 
-// x = t* - 1/2 of the nearest point, and its squared distance. The middle root of three is a greatest distance; the
-// outer ones, clamped to the curve, stand for its ends too. Of two equally near points the one with less t wins.
+// Finds x = t* - 1/2 of the nearest point, and its squared distance. The middle root of three is a greatest distance;
+// the outer ones, clamped to the curve, stand for its ends too. Of two equally near points the one with less t wins.
 INLINE floatv nearest_of_roots(const curve_path *const path, const curve_point *const point, const RootCounts counts,
                                floatv *const distance2) {
     if (path->is_straight)
@@ -171,7 +171,7 @@ INLINE floatv nearest_on_curve(const curve_path *const path, const curve_point *
     return nearest_of_roots(path, point, roots_at(point), distance2);
 }
 
-// Local intensity at C(1/2 + x).
+// Returns the local intensity at C(1/2 + x).
 INLINE floatv curve_intensity(const curve_path *const path, const floatv x) {
     return spline_at(path->pieces, path->spline_count, x + 0.5f);
 }

@@ -4,13 +4,13 @@
 #include "../../quadrature/stretch.h"
 #include "peaks.h"
 
-// Where a value that is linear along the ray is 0; 0 where it never is.
+// Returns where a value that is linear along the ray is 0; 0 where it never is.
 floatv zero_of(const Linear value) {
     const intv never = fabs(value.slope) < 1e-30f;
     return select(-value.at / select(value.slope, splat(1.0f), never), splat(0.0f), never);
 }
 
-// The ray's crossing of the plane through an end, where that end becomes the nearest point, or ceases to be.
+// Returns the ray's crossing of the plane through an end, where that end becomes the nearest point, or ceases to be.
 floatv end_cut(const curve_path *const path, const Linear beyond, const float x) {
     const floatv s = zero_of(beyond);
     const float velocity_across = fma(2.0f * path->bend, x, path->velocity_across);
@@ -20,8 +20,8 @@ floatv end_cut(const curve_path *const path, const Linear beyond, const float x)
     return select(splat(0.0f), s, speed2 - 2.0f * path->bend * across > 0.0f);
 }
 
-// Where the ray is equally far from C(1/2 + x) and C(1/2 + y), x and y apart; 0 where it never is. The difference of
-// the distances is small beside them, and where it is 0 the field may jump.
+// Returns where the ray is equally far from C(1/2 + x) and C(1/2 + y), x and y apart; 0 where it never is. The
+// difference of the distances is small beside them, and where it is 0 the field may jump.
 INLINE floatv equidistant(const curve_peaks *const peaks, const floatv x, const floatv y) {
     __global const Curve *const curve = peaks->curve;
     const fine3v velocity = fine3(curve->velocity, curve->velocity_rest);
@@ -38,7 +38,7 @@ INLINE floatv equidistant(const curve_peaks *const peaks, const floatv x, const 
     return select(gap / select(closing, splat(1.0f), never), splat(0.0f), never);
 }
 
-// Where both ends are nearest points of their parts, and equally far.
+// Returns where both ends are nearest points of their parts, and equally far.
 INLINE floatv ends_cut(const curve_peaks *const peaks, const Linear beyond_first, const Linear beyond_last) {
     const curve_path *const path = &peaks->path;
     const Linear difference =
@@ -52,7 +52,7 @@ INLINE floatv ends_cut(const curve_peaks *const peaks, const Linear beyond_first
     return select(splat(0.0f), equidistant(peaks, splat(-0.5f), splat(0.5f)), is_there);
 }
 
-// Where the nearest point jumps across the parabola's axis; else between two close approaches.
+// Returns where the nearest point jumps across the parabola's axis; else between two close approaches.
 INLINE floatv middle_cut(const curve_peaks *const peaks) {
     const curve_path *const path = &peaks->path;
     const floatv between = select(splat(0.0f), 0.5f * (peaks->first + peaks->second), peaks->are_two);
@@ -80,8 +80,8 @@ curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
     return sight;
 }
 
-// Whether there may be a nearest point of its part between the ends, given that the end at x is one and the other is
-// not: beyond a turning point +-sqrt(-p) of the cubic that lies on the curve, the one on the far side from x.
+// Returns whether there may be a nearest point of its part between the ends, given that the end at x is one and the
+// other is not: beyond a turning point +-sqrt(-p) of the cubic that lies on the curve, the one on the far side from x.
 INLINE intv may_be_between(const curve_path *const path, const curve_point *const point, const floatv x) {
     const float first = path->vertex - 0.5f, last = path->vertex + 0.5f;
     const floatv near_end = select(splat(-last), splat(first), x < 0.0f);
@@ -91,8 +91,8 @@ INLINE intv may_be_between(const curve_path *const path, const curve_point *cons
            ((near_end < 0.0f) | (turning2 > near_end * near_end));
 }
 
-// Whether the end of the curve at x is its point nearest to a point of the ray. Where the other end is a nearest point
-// of its part too, only that one competes.
+// Returns whether the end of the curve at x is its point nearest to a point of the ray. Where the other end is a
+// nearest point of its part too, only that one competes.
 INLINE intv end_is_nearest(const curve_peaks *const peaks, const floatv x, const floatv s) {
     const curve_path *const path = &peaks->path;
     const curve_point point = curve_point_at(path, s);
@@ -107,8 +107,8 @@ INLINE intv end_is_nearest(const curve_peaks *const peaks, const floatv x, const
     return is_nearest;
 }
 
-// Whether one end of the curve is the nearest point from all of a panel, and at which x it is: the points nearest to an
-// end form a convex set, so both ends of the panel tell.
+// Returns whether one end of the curve is the nearest point from all of a panel, and at which x it is: the points
+// nearest to an end form a convex set, so both ends of the panel tell.
 INLINE intv curve_is_closed(const curve_peaks *const peaks, const floatv from, const floatv to, floatv *const x) {
     const curve_path *const path = &peaks->path;
     const floatv middle = 0.5f * (from + to), inside = 1e-4f * (to - from);
@@ -128,7 +128,7 @@ INLINE intv curve_is_closed(const curve_peaks *const peaks, const floatv from, c
     return is_closed & end_is_nearest(peaks, *x, from + inside) & end_is_nearest(peaks, *x, to - inside);
 }
 
-// The integral of a panel from all of which the end of the curve at x is the nearest point.
+// Returns the integral of a panel from all of which the end of the curve at x is the nearest point.
 INLINE floatv curve_closed_form(const curve_peaks *const peaks, const Decay decay, const floatv x, const floatv from,
                                 const floatv to) {
     const curve_path *const path = &peaks->path;
@@ -144,7 +144,7 @@ INLINE floatv curve_closed_form(const curve_peaks *const peaks, const Decay deca
     return path->spline_count ? integral * curve_intensity(path, x) : integral;
 }
 
-// The integral of the lanes for which a panel is closed.
+// Finds in which lanes a panel is closed, and its integral there.
 INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, const floatv from, const floatv to,
                          floatv *const integral) {
     floatv x;
@@ -199,12 +199,12 @@ INLINE uint curve_panels(const curve_peaks *const peaks, const Decay decay, floa
     return 5;
 }
 
-// Whether all panels must be seen before errors can be measured by what they add up to: some may be dark.
+// Returns whether all panels must be seen before errors can be measured by what they add up to: some may be dark.
 INLINE bool curve_is_uneven(const curve_peaks *const peaks) {
     return peaks->path.spline_count > 0;
 }
 
-// Every piece of a local intensity may need panels of its own.
+// Returns further cuts: every piece of a local intensity may need panels of its own.
 INLINE uint curve_more_cuts(const curve_peaks *const peaks) {
     return 4 * peaks->path.spline_count;
 }
@@ -214,7 +214,7 @@ curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is
     return sight;
 }
 
-// Whether the nearest point jumps between an end of a panel and the outermost node, unseen by all others: the
+// Returns whether the nearest point jumps between an end of a panel and the outermost node, unseen by all others: the
 // field has a kink there, which counts when tolerances are tight, and with a local intensity a jump. Or whether a panel
 // spans so many pieces of a local intensity that its nodes cannot see them all.
 INLINE intv curve_is_broken(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv first,
@@ -231,8 +231,8 @@ INLINE intv curve_is_broken(const curve_peaks *const peaks, const floatv from, c
     return (max(fabs(begin), fabs(end)) > 0.1f) | (pieces > 4.0f);
 }
 
-// Where to cut a panel that is not resolved: where the nearest point jumps, or else in the middle. Halving closes in on
-// the fastest change; then both sides, continued as they are, meet in the jump.
+// Returns where to cut a panel that is not resolved: where the nearest point jumps, or else in the middle. Halving
+// closes in on the fastest change; then both sides, continued as they are, meet in the jump.
 INLINE floatv curve_split(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv middle) {
     const curve_path *const path = &peaks->path;
     intv can_jump = from > to;

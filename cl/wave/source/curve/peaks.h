@@ -18,7 +18,7 @@ typedef struct {
     __global const Curve *curve;
 } curve_peaks;
 
-// Outer roots of the depressed cubic; both are the single root where there is one.
+// Finds the outer roots of the depressed cubic; both are the single root where there is one.
 INLINE intv least_and_greatest_root(const floatv p, const floatv h, floatv *const least, floatv *const greatest) {
     const floatv discriminant = fma(p * p, p, h * h);
     const intv has_three = discriminant <= 0.0f;
@@ -33,7 +33,7 @@ INLINE intv least_and_greatest_root(const floatv p, const floatv h, floatv *cons
     return has_three;
 }
 
-// The parameter s at which the ray passes closest to C(1/2 + x), and its squared distance there.
+// Returns the parameter s at which the ray passes closest to C(1/2 + x), and its squared distance there.
 floatv closest_to_core(const curve_path *const path, const floatv span2, const floatv x, floatv *const distance2) {
     curve_point origin = curve_point_at(path, splat(0.0f));
     const curve_offset offset = offset_from_curve(path, &origin, x);
@@ -46,7 +46,7 @@ floatv closest_to_core(const curve_path *const path, const floatv span2, const f
     return s;
 }
 
-// (P - C).C' at an end of the curve, along the ray.
+// Returns (P - C).C' at an end of the curve, along the ray.
 Linear beyond_end(const curve_path *const path, const float x) {
     const float velocity_across = fma(2.0f * path->bend, x, path->velocity_across);
     const float end_along = path->velocity_along * x;
@@ -102,7 +102,7 @@ INLINE curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const 
     return peaks;
 }
 
-// L(s) - C(1/2 + x) in the curve's frame, doubled.
+// Returns L(s) - C(1/2 + x) in the curve's frame, doubled.
 INLINE float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
     __global const Curve *const curve = peaks->curve;
     const finev back = to_finev(-x);
@@ -125,8 +125,8 @@ typedef struct {
     RootCounts counts;
 } curve_near;
 
-// Whether the roots of the cubic have too few digits for such a squared distance. They lose as many as the parabola's
-// vertex is far from the curve's middle.
+// Returns whether the roots of the cubic have too few digits for such a squared distance. They lose the more, the
+// farther the parabola's vertex is from the curve's middle.
 bool needs_polish(const curve_path *const path, const floatv distance2) {
 #ifdef COARSE
     const float size = fabs(path->velocity_along) + fabs(path->velocity_across) + path->bend;
@@ -200,7 +200,7 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     return near;
 }
 
-// Looks which numbers of roots occur at any node, so that no node has to ask.
+// Finds which numbers of roots occur at any node, so that no node has to ask.
 INLINE void curve_look_ahead(curve_near *const near, const floatv *const left, const floatv *const right,
                              const uint count) {
     intv has_three = left[0] != left[0], has_one = has_three;
@@ -215,8 +215,8 @@ INLINE void curve_look_ahead(curve_near *const near, const floatv *const left, c
     near->counts.three = any_lane(has_three);
 }
 
-// A nearest point between the ends, improved by a Newton step on the derivative of the distance: close to the core,
-// from where it is seen, that has more digits than the cubic.
+// Improves a nearest point between the ends by a Newton step on the derivative of the distance: seen from the core
+// close by, that has more digits than the cubic.
 INLINE floatv polished(const curve_path *const path, const curve_point *const point, const floatv x) {
     const curve_offset offset = offset_from_curve(path, point, x);
     const floatv velocity_across = curve_velocity_across(path, x);
@@ -226,7 +226,7 @@ INLINE floatv polished(const curve_path *const path, const curve_point *const po
     return select(x, clamp(fma(behind, inverse(facing), x), -0.5f, 0.5f), fabs(x) < 0.5f);
 }
 
-// The field at s = base + x.
+// Returns the field at s = base + x.
 INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
     curve_point point = curve_point_at(&near->path, x);
     point.core = near->core;
