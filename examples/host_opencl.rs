@@ -57,7 +57,8 @@ fn main() -> Result<(), Box<dyn error::Error>> {
             profile: Profile::InverseSquare,
             color: DVec3::new(1.0, 0.5, 0.15),
             ..Torus::new(0.7 + 0.15 * f64::from(step))
-        }];
+        }]
+        .into();
         // The call returns at once. The frame begins when `wait_list` and what is on the queue before it are over; what
         // the host puts on the queue afterwards finds the image drawn.
         // SAFETY: the image is alive, and nothing else uses it now.
