@@ -18,6 +18,7 @@ pub struct Counters<const LEN: usize> {
 pub struct Counted<const LEN: usize> {
     values: Box<[u32; LEN]>,
     event: Handle<Event>,
+    is_over: bool,
 }
 
 impl<const LEN: usize> Counters<LEN> {
@@ -41,7 +42,11 @@ impl<const LEN: usize> Counters<LEN> {
         let mut values = Box::new([0; LEN]);
         // SAFETY: `Counted` neither reads nor frees the numbers before the event is over.
         let event = unsafe { buffer.begin_read(compute, values.as_mut_slice()) }?;
-        Ok(Some(Counted { values, event }))
+        Ok(Some(Counted {
+            values,
+            event,
+            is_over: false,
+        }))
     }
 
     /// The list, for kernels.
@@ -52,8 +57,9 @@ impl<const LEN: usize> Counters<LEN> {
 
 impl<const LEN: usize> Counted<LEN> {
     /// Waits for the numbers.
-    pub(crate) fn wait(&self, compute: &Compute) -> Result<[u32; LEN]> {
+    pub(crate) fn wait(mut self, compute: &Compute) -> Result<[u32; LEN]> {
         wait(compute, &self.event, "clEnqueueReadBuffer")?;
+        self.is_over = true;
         Ok(*self.values)
     }
 }
@@ -61,7 +67,9 @@ impl<const LEN: usize> Counted<LEN> {
 impl<const LEN: usize> Drop for Counted<LEN> {
     fn drop(&mut self) {
         // The copy writes to `values`: it must be over before they are freed, however it ended.
-        let _ = self.event.wait();
+        if !self.is_over {
+            let _ = self.event.wait();
+        }
     }
 }
 

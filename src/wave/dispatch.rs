@@ -223,13 +223,13 @@ impl Wave {
     fn settle_down_to(&mut self, most: usize, compute: &Compute, plan: &Plan) -> Result<()> {
         while self.under_way.len() > most {
             if let Some(launched) = self.under_way.pop_front() {
-                self.settle_one(compute, plan, &launched)?;
+                self.settle_one(compute, plan, launched)?;
             }
         }
         Ok(())
     }
 
-    fn settle_one(&mut self, compute: &Compute, plan: &Plan, launched: &Launched) -> Result<()> {
+    fn settle_one(&mut self, compute: &Compute, plan: &Plan, launched: Launched) -> Result<()> {
         let mut time = Duration::ZERO;
         for event in &launched.events {
             time += run_time(compute, event)?;
@@ -238,7 +238,7 @@ impl Wave {
         if let Some(reset) = &launched.reset {
             wait(compute, reset, "clEnqueueWriteBuffer")?;
         }
-        let counted = match &launched.counted {
+        let counted = match launched.counted {
             Some(counted) => counted.wait(compute)?,
             None => Default::default(),
         };
