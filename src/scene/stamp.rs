@@ -1,5 +1,5 @@
-//! The stamp of a scene's sources: a small value that is equal only where the sources are, so that nobody has to look at
-//! every source again.
+//! The stamp of a scene's sources: a small value that is equal only where the sources are, so that nobody has to look
+//! at every source again.
 
 use super::Scene;
 use super::kinds::{KIND_COUNT, for_each_kind};
