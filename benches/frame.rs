@@ -1,5 +1,5 @@
-//! Criterion benches: a frame by resolution and divisions, by kind and number of sources; the exact method by tolerance;
-//! packing; reading back against mapping. `cargo bench --bench frame`
+//! Criterion benches: a frame by resolution and divisions, by kind and number of sources; the exact method by
+//! tolerance; packing; reading back against mapping. `cargo bench --bench frame`
 #![allow(missing_docs)] // criterion's macros make undocumented functions
 #![allow(clippy::unwrap_used)] // a bench that fails stops
 
@@ -114,8 +114,8 @@ fn exact(criterion: &mut Criterion) {
     bench("curve", Table::Bezier.scene(512, 200));
 }
 
-/// What is done for every source of a scene, at 100 000 spheres: each on its own when something changed, and what a frame
-/// takes besides its kernels when nothing did.
+/// What is done for every source of a scene, at 100 000 spheres: each on its own when something changed, and what a
+/// frame takes besides its kernels when nothing did.
 fn of_every_source(criterion: &mut Criterion) {
     const COUNT: u32 = 100_000;
     let mut scene = crowd("spheres", COUNT);

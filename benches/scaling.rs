@@ -1,8 +1,8 @@
 //! How a frame's time and integrals grow with the image and with the number of sources, by tiles and by pixels, method
 //! exact at a tolerance of 1e-3.
 //!
-//! `cargo bench --bench scaling` prints tables and fitted exponents; `cargo bench --bench scaling -- benches/results/NAME`
-//! also writes NAME.md and the plots NAME-width.svg and NAME-sources.svg.
+//! `cargo bench --bench scaling` prints tables and fitted exponents; `cargo bench --bench scaling --
+//! benches/results/NAME` also writes NAME.md and the plots NAME-width.svg and NAME-sources.svg.
 #![allow(clippy::unwrap_used)] // a bench that fails stops
 
 mod common;
@@ -184,7 +184,8 @@ fn table(text: &mut String, heading: &str, series: &[Series], fit_from: u32) {
         let (t, p) = (tiles.exponents(fit_from), pixels.exponents(fit_from));
         let _ = writeln!(
             text,
-            "\nFrom {fit_from} on time grows with the power {:.2} by tiles, {:.2} by pixels; integrals {:.2} and {:.2}.\n",
+            "\nFrom {fit_from} on time grows with the power {:.2} by tiles, {:.2} by pixels; integrals {:.2} and \
+             {:.2}.\n",
             t.0, p.0, t.1, p.1
         );
     }

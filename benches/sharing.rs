@@ -1,5 +1,5 @@
-//! What it costs to draw into a host's memory instead of our own: 3840x2160 pixels into a buffer and images of a host, and
-//! into our own buffer, mapped, in turn. Ratios to the time of the kernels on our own buffer.
+//! What it costs to draw into a host's memory instead of our own: 3840x2160 pixels into a buffer and images of a host,
+//! and into our own buffer, mapped, in turn. Ratios to the time of the kernels on our own buffer.
 //!
 //! `cargo bench --bench sharing`
 #![allow(clippy::unwrap_used)] // a bench that fails stops
@@ -69,7 +69,8 @@ fn measure(name: &str, scene: &Scene) {
     let [kernel, whole, buffer, image, half] = times.map(|mut list| median(&mut list));
     let percent = |time: f64| 100.0 * (time / kernel - 1.0);
     println!(
-        "{name:<22} kernels {kernel:8.2} ms | mapped {:+5.1} % | host's buffer {:+5.1} % | float image {:+5.1} % | half image {:+5.1} %",
+        "{name:<22} kernels {kernel:8.2} ms | mapped {:+5.1} % | host's buffer {:+5.1} % | \
+         float image {:+5.1} % | half image {:+5.1} %",
         percent(whole),
         percent(buffer),
         percent(image),

@@ -1,7 +1,7 @@
 //! The paper's Tables 2 and 3: ours, the paper's, and the plain transcription `benches/plain.cl`, in one run.
 //!
-//! `cargo bench --bench tables` prints them; `cargo bench --bench tables -- benches/results/NAME` also writes NAME.md, a
-//! record with machine, device, driver and command, and NAME.svg, frames a second against evaluations a frame.
+//! `cargo bench --bench tables` prints them; `cargo bench --bench tables -- benches/results/NAME` also writes NAME.md,
+//! a record with machine, device, driver and command, and NAME.svg, frames a second against evaluations a frame.
 #![allow(clippy::unwrap_used, clippy::panic)] // a bench that fails stops
 #![allow(unsafe_code)] // one call must come before everything else, and a kernel of its own is run
 
@@ -91,8 +91,8 @@ impl Plain {
         Self { compute, program }
     }
 
-    /// Frames a second by the median time of whole frames, read-back included, as [`measure`] does. The first frame must
-    /// show what `ours` shows.
+    /// Frames a second by the median time of whole frames, read-back included, as [`measure`] does. The first frame
+    /// must show what `ours` shows.
     fn fps(&self, scene: &Scene, ours: &RadianceImage) -> f64 {
         let pixels = scene.image.pixels();
         let mut image = vec![[0.0_f32; 4]; pixels];

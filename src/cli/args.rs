@@ -118,7 +118,7 @@ pub struct DeviceArgument {
     /// OpenCL device [env: ENERGYWAVE_DEVICE] [default: best GPU, else CPU, else reference]
     #[arg(long)]
     pub device: Option<String>,
-    /// Draw also on a device that computes wrong
+    /// Use the device even if its kernels fail the self-test
     #[arg(long)]
     pub no_self_test: bool,
 }

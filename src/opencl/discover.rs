@@ -106,8 +106,8 @@ pub fn discover() -> Discovery {
     let names: Vec<String> = platforms.iter().filter_map(|p| p.name().ok()).collect();
     let problem = devices.is_empty().then(|| {
         format!(
-            "the OpenCL driver is installed ({}) but offers no usable device; check the driver (PoCL: is its cache folder, \
-             POCL_CACHE_DIR, writable?)",
+            "the OpenCL driver is installed ({}) but offers no usable device; check the driver (PoCL: is its cache \
+             folder, POCL_CACHE_DIR, writable?)",
             names.join(", ")
         )
     });

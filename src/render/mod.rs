@@ -16,7 +16,7 @@ use crate::error::{Error, Result, SceneError};
 use crate::image::{RadianceImage, kept_image};
 use crate::opencl::{MappedFilm, RendererOptions};
 use crate::reference::{self, Tracer};
-use crate::scene::{Measure, Method, Ray, Scene, SceneStamp};
+use crate::scene::{CheckedSources, Measure, Method, Ray, Scene};
 use device::Backend;
 use one::{DeviceRenderer, Rows};
 use several::SeveralRenderer;
@@ -47,8 +47,8 @@ impl Deref for MappedImage<'_> {
 #[derive(Debug)]
 pub struct Renderer {
     backend: RendererBackend,
-    /// The scene that was checked last.
-    checked: Option<SceneStamp>,
+    /// The sources that were checked last.
+    checked: Option<CheckedSources>,
 }
 
 #[derive(Debug)]
@@ -212,8 +212,8 @@ impl Renderer {
         let needed = before_last.saturating_add(row);
         if stride < row || target.len() < needed {
             return Err(Error::Unsupported(format!(
-                "render_rows: {} values in rows {stride} apart; {width}x{} RGBA pixels need rows of {row}, and {needed} in \
-                 all",
+                "render_rows: {} values in rows {stride} apart; {width}x{} RGBA pixels need rows of {row}, and {needed} \
+                 in all",
                 target.len(),
                 rows.len()
             )));
@@ -296,15 +296,9 @@ impl Renderer {
         Ok(colors.collect())
     }
 
-    /// Checks a scene, unless it is the one that was checked last.
+    /// Checks a scene; its sources only if they changed.
     fn check(&mut self, scene: &Scene) -> Result<()> {
-        let stamp = Some(scene.stamp());
-        if self.checked != stamp {
-            self.checked = None;
-            scene.validate()?;
-            self.checked = stamp;
-        }
-        Ok(())
+        scene.validate_again(&mut self.checked)
     }
 
     fn draw(

@@ -1,7 +1,7 @@
 //! The table of kinds: one row for each kind of source.
 //!
-//! A row gives the kind's name, which is its key in scene files, its module in every folder and its name in OpenCL C; its
-//! type; and its list in a [`Scene`](super::Scene). Everything that is made for each kind is made from these rows:
+//! A row gives the kind's name, which is its key in scene files, its module in every folder and its name in OpenCL C;
+//! its type; and its list in a [`Scene`](super::Scene). Everything that is made for each kind is made from these rows:
 //! the scene's lists and the file's keys, the reference's fields, the packed lists, the kernels' parameters and the
 //! generated `kinds.h`. ARCHITECTURE.md says what else a kind needs.
 

@@ -25,7 +25,8 @@ pub use integration::{CORE_FLOOR, Decay, Integration, Measure, Method, Sampling}
 pub use list::List;
 pub use ray::{Ray, ViewPlane};
 pub use source::*;
-pub(crate) use stamp::{SceneStamp, SourcesStamp};
+pub(crate) use stamp::SourcesStamp;
+pub(crate) use validate::CheckedSources;
 
 use crate::image::{DepthImage, Display, ImageSize};
 use kinds::for_each_kind;

@@ -1,45 +1,14 @@
-//! Stamps: small values that are equal only where the scenes are, so that nobody has to look at every source again.
+//! The stamp of a scene's sources: a small value that is equal only where the sources are, so that nobody has to look
+//! at every source again.
 
+use super::Scene;
 use super::kinds::{KIND_COUNT, for_each_kind};
-use super::{Camera, Decay, Integration, Scene};
-use crate::image::{DepthImage, Display, ImageSize};
 
 /// The revisions of a scene's lists, in the order of the table of kinds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct SourcesStamp([u64; KIND_COUNT]);
 
-/// Everything of a scene, its lists by their revisions and its depths by their place in memory.
-#[derive(Debug, Clone)]
-pub(crate) struct SceneStamp {
-    camera: Camera,
-    image: ImageSize,
-    decay: Option<Decay>,
-    integration: Integration,
-    display: Display,
-    depth: Option<DepthImage>,
-    sources: SourcesStamp,
-}
-
-impl PartialEq for SceneStamp {
-    fn eq(&self, other: &Self) -> bool {
-        let is_same_depth = match (&self.depth, &other.depth) {
-            (Some(depth), Some(other)) => {
-                depth.shares_values(other)
-                    && (depth.size(), depth.along()) == (other.size(), other.along())
-            }
-            (depth, other) => depth.is_none() && other.is_none(),
-        };
-        is_same_depth
-            && self.sources == other.sources
-            && self.camera == other.camera
-            && self.image == other.image
-            && self.decay == other.decay
-            && self.integration == other.integration
-            && self.display == other.display
-    }
-}
-
-macro_rules! define_stamps {
+macro_rules! define_stamp {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         impl Scene {
             pub(crate) fn sources_stamp(&self) -> SourcesStamp {
@@ -48,58 +17,57 @@ macro_rules! define_stamps {
         }
     };
 }
-for_each_kind!(define_stamps);
-
-impl Scene {
-    pub(crate) fn stamp(&self) -> SceneStamp {
-        SceneStamp {
-            camera: self.camera.clone(),
-            image: self.image,
-            decay: self.decay,
-            integration: self.integration,
-            display: self.display,
-            depth: self.depth.clone(),
-            sources: self.sources_stamp(),
-        }
-    }
-}
+for_each_kind!(define_stamp);
 
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
 
-    use super::*;
-    use crate::image::DepthAlong;
-    use crate::scene::Sphere;
+    use crate::scene::{Camera, Decay, Scene, Sphere};
+
+    fn scene() -> Scene {
+        let mut scene = Scene::new(Camera::new(4.0 * DVec3::X, DVec3::ZERO));
+        scene.spheres.push(Sphere::default());
+        scene
+    }
 
     #[test]
-    fn a_stamp_changes_with_each_part_of_the_scene() {
-        let mut scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));
-        scene.spheres.push(Sphere::default());
-        let before = scene.stamp();
-        assert!(before == scene.clone().stamp());
-        let changes: [fn(&mut Scene); 8] = [
-            |scene| scene.camera.near = 0.5,
-            |scene| scene.image.width = 7,
-            |scene| {
-                scene.decay = Some(Decay {
-                    alpha: 1.0,
-                    beta: 1.0,
-                });
-            },
-            |scene| scene.integration.softening = 0.1,
-            |scene| scene.display.exposure = 1.0,
-            |scene| scene.spheres[0].coefficient = 2.0,
-            |scene| scene.curves.clear(),
-            |scene| {
-                let values = vec![1.0; scene.image.pixels()];
-                scene.depth = DepthImage::new(scene.image, DepthAlong::Ray, values).ok();
-            },
-        ];
-        for (number, change) in changes.into_iter().enumerate() {
+    fn the_stamp_changes_with_the_sources_alone() {
+        let scene = scene();
+        let before = scene.sources_stamp();
+        let after = |change: fn(&mut Scene)| {
             let mut other = scene.clone();
             change(&mut other);
-            assert!(before != other.stamp(), "change {number}");
-        }
+            other.sources_stamp()
+        };
+        assert!(before == after(|scene| scene.camera.near = 0.5));
+        assert!(before != after(|scene| scene.spheres[0].coefficient = 2.0));
+        assert!(before != after(|scene| scene.curves.clear()));
+    }
+
+    #[test]
+    fn faults_are_found_though_the_sources_were_right_before() {
+        let mut checked = None;
+        let mut scene = scene();
+        scene.spheres[0].coefficient = 1e9;
+        scene.validate_again(&mut checked).unwrap();
+        let first = checked;
+        scene.validate_again(&mut checked).unwrap();
+        assert!(checked.is_some() && checked == first);
+        let fault = |change: fn(&mut Scene)| {
+            let (mut other, mut checked) = (scene.clone(), checked);
+            change(&mut other);
+            let error = other.validate_again(&mut checked).unwrap_err();
+            error.to_string()
+        };
+        assert!(fault(|scene| scene.camera.near = -1.0).contains("camera.near"));
+        assert!(fault(|scene| scene.spheres[0].center.x = f64::NAN).contains("sphere[0].center"));
+        let bright = fault(|scene| {
+            scene.decay = Some(Decay {
+                alpha: 1e9,
+                beta: 1e-4,
+            });
+        });
+        assert!(bright.contains("sphere[0].coefficient"), "{bright}");
     }
 }

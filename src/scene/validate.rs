@@ -2,11 +2,15 @@
 
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite};
-use super::{BRIGHTEST, Brightness, CORE_FLOOR, List, Measure, Scene, SourceKind};
+use super::{BRIGHTEST, Brightness, CORE_FLOOR, List, Measure, Scene, SourceKind, SourcesStamp};
 use crate::error::{Result, SceneError};
 use crate::image::{Display, ImageSize};
 
 type CheckedScene = std::result::Result<(), SceneError>;
+
+/// Equal only for sources that are equally right.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CheckedSources(SourcesStamp, Brightness);
 
 impl Scene {
     /// Checks every value. The renderer calls it too: call it where you want the fault before the frame.
@@ -17,7 +21,27 @@ impl Scene {
         Ok(self.check()?)
     }
 
+    /// Checks every value, of the sources only if they, or the light that float32 holds, are not those of `checked`.
+    pub(crate) fn validate_again(&self, checked: &mut Option<CheckedSources>) -> Result<()> {
+        let now = Some(CheckedSources(
+            self.sources_stamp(),
+            self.check_but_sources()?,
+        ));
+        if *checked != now {
+            *checked = None;
+            self.validate()?;
+            *checked = now;
+        }
+        Ok(())
+    }
+
     pub(super) fn check(&self) -> CheckedScene {
+        let brightness = self.check_but_sources()?;
+        self.check_sources(&brightness)
+    }
+
+    /// Checks what does not grow with the number of sources; gives what their light is held against.
+    fn check_but_sources(&self) -> std::result::Result<Brightness, SceneError> {
         let of = |table: &'static str| move |fault: Fault| fault.of(table);
         self.camera.check().map_err(of("camera"))?;
         check_size(self.image).map_err(of("image"))?;
@@ -39,7 +63,7 @@ impl Scene {
                 ),
             ));
         }
-        self.check_sources(&brightness)
+        Ok(brightness)
     }
 
     /// Returns the greatest value that decay times field times measure can take, on a ray through a core.

@@ -48,8 +48,9 @@ impl Wave {
         self.open_tiles.reserve(compute, &plan.passes(&largest))
     }
 
-    /// Draws all sources on a band of pixels, at most [`MOST_UNDER_WAY`] launches at a time: the pace of the next depends on
-    /// those before, and the queue stays short. The last ones may still be under way: [`Wave::settle`] waits for them.
+    /// Draws all sources on a band of pixels, at most [`MOST_UNDER_WAY`] launches at a time: the pace of the next
+    /// depends on those before, and the queue stays short. The last ones may still be under way: [`Wave::settle`] waits
+    /// for them.
     ///
     /// # Errors
     /// [`Error::Interrupted`] if `progress`, which hears the number of the next pixel, says so; [`Error::Device`].
@@ -84,8 +85,8 @@ impl Wave {
         Ok(())
     }
 
-    /// Draws all sources on all of a frame's pixels without waiting for anything. What is found finished later tells the
-    /// pace.
+    /// Draws all sources on all of a frame's pixels without waiting for anything. What is found finished later tells
+    /// the pace.
     ///
     /// # Errors
     /// [`Error::Device`] if the driver refuses a launch.

@@ -65,8 +65,8 @@ impl Pace {
         }
     }
 
-    /// How many of the next `left` pixels to launch: as many as the pace allows with all sources that a launch may take,
-    /// but not too few.
+    /// How many of the next `left` pixels to launch: as many as the pace allows with all sources that a launch may
+    /// take, but not too few.
     pub(super) fn pixels(&self, work: &Work, left: u32) -> u32 {
         let sources = work.source_count.clamp(1, work.most_sources);
         let samples = f64::from(work.node_count) * sources as f64;

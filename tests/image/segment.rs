@@ -1,5 +1,5 @@
-//! Segments against the definition: 1 over the distance to the nearest point between the ends, or its square, integrated in
-//! float64 without a closed form.
+//! Segments against the definition: 1 over the distance to the nearest point between the ends, or its square,
+//! integrated in float64 without a closed form.
 
 use crate::common;
 use crate::common::random::random_view;
@@ -58,8 +58,8 @@ fn by_definition(segment: &Segment, ray: &Ray, decay: Option<Decay>) -> f64 {
     integrate(integrand, &mut breaks, 1.0, 1e-11).value
 }
 
-/// Rays past the segment from (-1, 0, 0) to (1, 0, 0): across it, beside its ends, level with their planes, along it, beside
-/// it and beyond, and close to it.
+/// Rays past the segment from (-1, 0, 0) to (1, 0, 0): across it, beside its ends, level with their planes, along it,
+/// beside it and beyond, and close to it.
 fn hard_rays() -> Vec<Ray> {
     let ray = |from: [f64; 3], to: [f64; 3]| Ray::between(from.into(), to.into());
     vec![
