@@ -189,8 +189,8 @@ impl Film {
     /// launch of an engine on them.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] if light must be gathered and there is no memory for it; [`Error::Unsupported`] if a film of
-    /// its own is of another size.
+    /// [`Error::OutOfMemory`] if light must be gathered and there is no memory for it; [`Error::Unsupported`] if a film
+    /// of its own is of another size.
     pub(crate) fn arguments(
         &mut self,
         compute: &Compute,

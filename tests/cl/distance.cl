@@ -1,5 +1,5 @@
-// 1 / field at the point S + s (E - S), for the first source of a kind; tests/device/device_functions.rs writes its name
-// for KIND and its type for TYPE.
+// 1 / field at the point S + s (E - S), for the first source of a kind; tests/device/device_functions.rs writes its
+// name for KIND and its type for TYPE.
 __kernel void KIND_distance(__global const TYPE *first, __global const float *ox, __global const float *oy,
                             __global const float *oz, __global const float *dx, __global const float *dy,
                             __global const float *dz, __global const float *ss, __global float *result) {

@@ -6,7 +6,8 @@ use std::process::Command;
 /// Says in the environment which test the process is for.
 const VARIABLE: &str = "ENERGYWAVE_TEST_APART";
 
-/// Runs a test in a process of its own, with these environment variables. The test is the whole body of a test function:
+/// Runs a test in a process of its own, with these environment variables. The test is the whole body of a test
+/// function:
 ///
 /// ```text
 /// #[test]

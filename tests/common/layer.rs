@@ -62,15 +62,16 @@ impl Layer {
         layer
     }
 
-    /// Lets the `nth` next call of a function fail with an OpenCL error code, once. `*` at the end of the name stands for
-    /// any further letters: "clEnqueue*". A wait, `clFinish` or a release does its work and then answers with the code;
-    /// any other call that fails does nothing. A new fault takes the place of the one before.
+    /// Lets the `nth` next call of a function fail with an OpenCL error code, once. `*` at the end of the name stands
+    /// for any further letters: "clEnqueue*". A wait, `clFinish` or a release does its work and then answers with the
+    /// code; any other call that fails does nothing. A new fault takes the place of the one before.
     pub fn fail(&self, function: &str, nth: u64, code: i32) {
         self.arm(function, nth, code, false, false);
     }
 
-    /// Lets the command that the `nth` next call of a function enqueues fail with an OpenCL error code: the call goes well,
-    /// the work is not done, and its event says so to who asks. Blocking calls, and those without an event, fail at once.
+    /// Lets the command that the `nth` next call of a function enqueues fail with an OpenCL error code: the call goes
+    /// well, the work is not done, and its event says so to who asks. Blocking calls, and those without an event, fail
+    /// at once.
     pub fn fail_work(&self, function: &str, nth: u64, code: i32) {
         self.arm(function, nth, code, true, false);
     }

@@ -22,8 +22,8 @@ use energywave::scene::{
 use energywave::{Device, DeviceType, RadianceImage, Renderer, RendererOptions, Scene, reference};
 use glam::DVec3;
 
-/// Every lane width that the kernels can be built for; only the device's own on Intel's CPU runtime, which compiles each
-/// build for up to a minute.
+/// Every lane width that the kernels can be built for; only the device's own on Intel's CPU runtime, which compiles
+/// each build for up to a minute.
 pub fn lane_widths() -> Vec<u32> {
     let device = device();
     match device.device_type == DeviceType::Cpu && device.platform.contains("Intel") {

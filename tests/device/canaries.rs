@@ -8,8 +8,8 @@ use energywave::internals::{
 };
 use half::f16;
 
-/// Renders straight into a buffer with 64 marked pixels behind the image, or with `-D HALVES` into one of half floats; how
-/// many marks are left. `kernel` is `render` or `tiles`.
+/// Renders straight into a buffer with 64 marked pixels behind the image, or with `-D HALVES` into one of half floats;
+/// how many marks are left. `kernel` is `render` or `tiles`.
 #[allow(unsafe_code)]
 fn marks_left(
     kernel: &str,

@@ -33,8 +33,8 @@ __kernel void paint(const View view, const FilmPart part, FILM_PARAMETER) {
 const WIDTH: u32 = 37;
 const HEIGHT: u32 = 21;
 
-/// Relative to 1 or to the pixel. The view's rays in float32; the wave's kernels for an image round in another order (as in
-/// tests/host/host.rs); half floats have 11 binary digits.
+/// Relative to 1 or to the pixel. The view's rays in float32; the wave's kernels for an image round in another order
+/// (as in tests/host/host.rs); half floats have 11 binary digits.
 const ROUNDING: f32 = 1e-6;
 const OTHER_KERNEL: f32 = 2e-4;
 const HALF_ROUNDING: f32 = 1.0 / 2048.0;

@@ -1,5 +1,5 @@
-//! Every kernel on every lane width, small enough for a simulator: `.ci/run` runs this under oclgrind, which watches every
-//! access. On any other device it is one more test, of its own lane width.
+//! Every kernel on every lane width, small enough for a simulator: `.ci/run` runs this under oclgrind, which watches
+//! every access. On any other device it is one more test, of its own lane width.
 #![allow(unsafe_code)] // hosts call OpenCL
 
 use crate::common;
@@ -57,8 +57,8 @@ fn every_kernel_runs_on_every_lane_width() {
 
 #[test]
 fn frames_for_a_host_touch_nothing_but_their_own() {
-    // Each in a context of its own: in one context oclgrind 21.10 calls buffers of the second uninitialised, which it does
-    // not where the second runs alone.
+    // Each in a context of its own: in one context oclgrind 21.10 calls buffers of the second uninitialised, which it
+    // does not where the second runs alone.
     for lanes in [1, 16] {
         let host = Host::new(0);
         let options = common::options(lanes, "");

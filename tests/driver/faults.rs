@@ -1,5 +1,5 @@
-//! Whatever call to OpenCL fails, in any frame: an error says what and what to do, nothing panics, hangs or leaks, and the
-//! same renderer draws the next frame right.
+//! Whatever call to OpenCL fails, in any frame: an error says what and what to do, nothing panics, hangs or leaks, and
+//! the same renderer draws the next frame right.
 
 use crate::common;
 use crate::common::layer::{Layer, with_layer};
@@ -104,8 +104,8 @@ fn expect(error: &Error, device: &Device, calls: &[&str], code: i32) {
     );
 }
 
-/// Lets the n-th call of a function fail in a frame, for every n until the frame passes, by every film and way: each time
-/// an error in one of these `calls`, and after it the image from before, and as many objects.
+/// Lets the n-th call of a function fail in a frame, for every n until the frame passes, by every film and way: each
+/// time an error in one of these `calls`, and after it the image from before, and as many objects.
 fn fail_every_call(function: &str, code: i32, calls: &[&str]) {
     fail_every(Layer::fail, function, code, calls, films());
 }
@@ -147,8 +147,8 @@ fn fail_every(
     Renderer::new(&device).unwrap();
 }
 
-/// Lets the n-th call of a function fail in the first frame of a renderer, for every n until it passes: each time an error
-/// that is `right`; the same renderer then draws the frame, and leaves nothing behind.
+/// Lets the n-th call of a function fail in the first frame of a renderer, for every n until it passes: each time an
+/// error that is `right`; the same renderer then draws the frame, and leaves nothing behind.
 fn fail_first_frames(function: &str, code: i32, right: impl Fn(&Error, u64)) {
     let layer = Layer::new();
     let device = common::device();
@@ -291,8 +291,9 @@ fn work_that_failed_is_an_error_and_the_next_frame_is_right() {
         for command in ["clEnqueueNDRangeKernel", "clEnqueueReadBuffer"] {
             fail_every(Layer::fail_work, command, WAIT_LIST, &waits, films());
         }
-        // Tiles that stay open would be counted on from old numbers, and the lists are not that long: only a lost device leaves
-        // such a copy out, and that runs no kernel after it. So by tiles there is but a source that is smooth everywhere.
+        // Tiles that stay open would be counted on from old numbers, and the lists are not that long: only a lost
+        // device leaves such a copy out, and that runs no kernel after it. So by tiles there is but a source that is
+        // smooth everywhere.
         let mut films = films();
         for (step, scene) in films[0].iter_mut().enumerate() {
             scene.spheres[0].center.y += 300.0;

@@ -1,5 +1,5 @@
-//! Whatever call fails while a frame is enqueued for a host, and whatever a host gives that does not fit: an error, no panic,
-//! the host's queue is never finished, and its next frame is right.
+//! Whatever call fails while a frame is enqueued for a host, and whatever a host gives that does not fit: an error, no
+//! panic, the host's queue is never finished, and its next frame is right.
 #![allow(unsafe_code)] // hosts call OpenCL
 
 use crate::common;

@@ -1,7 +1,7 @@
 //! What drivers do wrong: calls that fail, devices that are lost, kernels that compute wrong, OpenCL that is missing.
 //!
-//! Whoever looks at this process' own calls to OpenCL has a process of its own, see [`common::apart`]: loaders load layers
-//! once, and objects and memory are counted for all threads together.
+//! Whoever looks at this process' own calls to OpenCL has a process of its own, see [`common::apart`]: loaders load
+//! layers once, and objects and memory are counted for all threads together.
 #![allow(clippy::unwrap_used, clippy::panic)] // tests fail by panicking
 #![cfg(unix)] // the OpenCL layer is a shared library
 

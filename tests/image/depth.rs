@@ -18,8 +18,8 @@ use glam::DVec3;
 /// Two computations in float32 of the same integral.
 const CUT_BY_HAND: f64 = 1e-5;
 
-/// Simpson's rule may have a sample next to a core, whose distance two rays with other coordinates round differently: so
-/// far off, and so many pixels in a thousand beyond the other limit.
+/// Simpson's rule may have a sample next to a core, whose distance two rays with other coordinates round differently:
+/// so far off, and so many pixels in a thousand beyond the other limit.
 const CLOSE_SAMPLE: f64 = 1e-4;
 const CLOSE_SAMPLES: usize = 20;
 
@@ -51,8 +51,8 @@ fn with_ends(scene: &Scene, along: DepthAlong, end: impl Fn(u32, u32) -> f64) ->
     scene
 }
 
-/// An integral over s in [0,g] is g times that along the ray that ends there, whose decay is alpha / g^2 and beta / g; the
-/// ray is cut where the depth says that it ends, in float64.
+/// An integral over s in [0,g] is g times that along the ray that ends there, whose decay is alpha / g^2 and beta / g;
+/// the ray is cut where the depth says that it ends, in float64.
 fn cut_by_hand(renderer: &mut Renderer, scene: &Scene) -> RadianceImage {
     let plane = plane_of(scene);
     let depth = scene.depth.as_ref().unwrap();

@@ -100,8 +100,8 @@ fn one_wrong_pixel_fails_the_same_comparison() {
     assert_eq!(found.worst, (60, 7));
 }
 
-/// Weighted curves whose nearest point is a matter of choice: a point, folds that run twice through the same points, and
-/// a nearly straight one from afar.
+/// Weighted curves whose nearest point is a matter of choice: a point, folds that run twice through the same points,
+/// and a nearly straight one from afar.
 fn weighted_curves() -> Vec<(&'static str, [[f64; 3]; 3], f64)> {
     vec![
         ("a point", [[0.3, 0.2, 0.1]; 3], 1.0),

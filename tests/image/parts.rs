@@ -1,5 +1,5 @@
-//! Parts of an image, single rays, and scenes that change from frame to frame, beside whole images of renderers that drew
-//! nothing before.
+//! Parts of an image, single rays, and scenes that change from frame to frame, beside whole images of renderers that
+//! drew nothing before.
 
 use crate::common;
 use crate::common::{difference, renderer, sampled};

@@ -1,5 +1,5 @@
-//! An OpenCL layer for tests: it stands between the loader and the driver, counts calls and live objects, and lets calls
-//! fail on command. `tests/common/layer.rs` is a test's side of it.
+//! An OpenCL layer for tests: it stands between the loader and the driver, counts calls and live objects, and lets
+//! calls fail on command. `tests/common/layer.rs` is a test's side of it.
 //!
 //! The loader (ocl-icd from 2.3.0 on, Khronos') loads the libraries that `OPENCL_LAYERS` names, hands each the table of
 //! functions below it, and calls those of the table that it gets back.
@@ -82,9 +82,9 @@ extern "C" fn layer_is_loaded() -> bool {
     TABLES.get().is_some()
 }
 
-/// Lets the `nth` next call of these functions fail with a code, and if it `stays` all their later ones too; if `is_late`,
-/// what was enqueued fails, not the call. It takes the place of an earlier fault. How many functions have the name; `*` at
-/// its end stands for any further letters.
+/// Lets the `nth` next call of these functions fail with a code, and if it `stays` all their later ones too; if
+/// `is_late`, what was enqueued fails, not the call. It takes the place of an earlier fault. How many functions have
+/// the name; `*` at its end stands for any further letters.
 ///
 /// # Safety
 /// `names` is a C string.

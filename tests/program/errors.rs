@@ -1,5 +1,5 @@
-//! Errors for programs: a kind and a code for each, and what another library said; and options that no kernel can be built
-//! for.
+//! Errors for programs: a kind and a code for each, and what another library said; and options that no kernel can be
+//! built for.
 
 use std::collections::HashSet;
 use std::error::Error as _;
