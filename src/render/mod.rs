@@ -212,8 +212,8 @@ impl Renderer {
         let needed = before_last.saturating_add(row);
         if stride < row || target.len() < needed {
             return Err(Error::Unsupported(format!(
-                "render_rows: {} values in rows {stride} apart; {width}x{} RGBA pixels need rows of {row}, and {needed} \
-                 in all",
+                "render_rows: {} values in rows {stride} apart; {width}x{} RGBA pixels need rows of {row}, and \
+                 {needed} in all",
                 target.len(),
                 rows.len()
             )));

@@ -9,7 +9,8 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 
 /// Why a scene cannot be written.
-const NO_FILE: &str = "the depth image is in no file, so the scene cannot name it; save it as OpenEXR and open it again";
+const NO_FILE: &str =
+    "the depth image is in no file that the scene could name; save it as OpenEXR and open it again";
 
 impl Serialize for Scene {
     /// Writes the structure of scene files. A depth image is named by the full path of its file.
