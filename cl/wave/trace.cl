@@ -30,7 +30,7 @@ __kernel void trace(const FilmPart part, const Integrand integrand, const Launch
     if (begin >= part.count)
         return;
     const Sources sources = {KINDS(SOURCE_VALUE) spline_pieces};
-    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts);
+    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count);
     const uintv index = min(begin + LANE_NUMBERS, (uintv)(part.count - 1));
     const Ray ray = listed_ray(rays, part.first + index, integrand.softening2);
     const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch);

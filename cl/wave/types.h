@@ -19,9 +19,11 @@ typedef struct {
 } Integrand;
 CHECK_SIZE(Integrand, SIZEOF_INTEGRAND);
 
-// Which part of each list of sources a launch takes. A kind has the same number here and in kinds.h.
+// Which part of each list of sources a launch takes, and where it counts. A kind has the same number here and in
+// kinds.h.
 typedef struct {
     uint begin[KIND_COUNT], end[KIND_COUNT];
+    uint first_count; // of its own in the list of counts
 } Launch;
 CHECK_SIZE(Launch, SIZEOF_LAUNCH);
 

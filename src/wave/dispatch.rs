@@ -7,6 +7,7 @@ use opencl3::event::Event;
 
 use super::counts::CountedNumbers;
 use super::kernels::{Rays, Variant};
+use super::pack::layout::Launch;
 use super::partition::Part;
 use super::plan::Plan;
 use super::tiles::{self, OpenTiles};
@@ -23,8 +24,9 @@ const MOST_UNDER_WAY: usize = 2;
 pub(super) struct Launched {
     /// Of each pass.
     events: Vec<Handle<Event>>,
-    /// What was set to 0 before, and what was counted.
+    /// The copy of zeros before it, if there was one.
     reset: Option<Handle<Event>>,
+    /// What was counted by this launch and those before it, since numbers were last fetched.
     counted: Option<CountedNumbers>,
     /// If every pixel takes every source.
     integrals: u64,
@@ -41,6 +43,7 @@ impl Wave {
         self.pace.begin(&plan.counts);
         self.cost = FrameCost::default();
         self.under_way.clear();
+        self.counts.begin();
         let largest = Part {
             pixels: 0..plan.work.most_pixels().min(pixels as u32),
             sources: 0..plan.work.source_count.min(plan.work.most_sources),
@@ -69,8 +72,11 @@ impl Wave {
             loop {
                 self.settle_down_to(MOST_UNDER_WAY - 1, compute, plan)?;
                 let part = self.pace.part(&plan.work, &pixels, source);
-                let launched = self.launch(compute, plan, &part, film, true)?;
+                let launched = self.launch(compute, plan, &part, film)?;
                 self.under_way.push_back(launched);
+                if self.counts.is_used_up() {
+                    self.fetch_counts(compute)?;
+                }
                 source = part.sources.end;
                 if source >= plan.work.source_count {
                     break;
@@ -82,7 +88,7 @@ impl Wave {
                 return Err(Error::Interrupted);
             }
         }
-        Ok(())
+        self.fetch_counts(compute)
     }
 
     /// Draws all sources on all of a frame's pixels without waiting for anything. What is found finished later tells
@@ -105,8 +111,11 @@ impl Wave {
             let mut source = 0;
             loop {
                 let part = self.pace.part(&plan.work, &next, source);
-                let mut launched = self.launch(compute, plan, &part, film, false)?;
+                let mut launched = self.launch(compute, plan, &part, film)?;
                 self.held.extend(launched.reset.take());
+                if self.counts.is_used_up() {
+                    self.counts.begin();
+                }
                 self.cost.launches += launched.events.len() as u32;
                 self.unwatched.push(launched);
                 source = part.sources.end;
@@ -141,18 +150,19 @@ impl Wave {
         plan: &Plan,
         part: &Part,
         film: &mut Film,
-        is_watched: bool,
     ) -> Result<Launched> {
         let passes = plan.passes(part);
         self.open_tiles.reserve(compute, &passes)?;
-        let counts = self.counts_in(plan);
-        let reset = match counts {
-            true => Some(self.counts.reset(compute)?),
+        let set = match self.counts_in(plan) {
+            true => Some(self.counts.take(compute)?),
             false => None,
         };
         let (is_first, is_last) = plan.place_of(part);
         let film = film.arguments(compute, &part.pixels, plan.size, is_first, is_last)?;
-        let launch = plan.launch(part);
+        let launch = Launch {
+            first_count: set.as_ref().map_or(0, |set| set.first),
+            ..plan.launch(part)
+        };
         let mut common: Vec<(&str, &dyn Argument)> =
             vec![("integrand", &plan.integrand), ("launch", &launch)];
         common.extend(self.lists.named(&self.packed.sources));
@@ -194,17 +204,23 @@ impl Wave {
                 passes.iter().map(tiles).collect::<Result<_>>()?
             }
         };
-        let counted = match is_watched && counts {
-            true => self.counts.fetch(compute)?,
-            false => None,
-        };
         Ok(Launched {
             events,
-            reset,
-            counted,
+            reset: set.and_then(|set| set.reset),
+            counted: None,
             integrals: part.pixels.len() as u64 * (part.sources.end - part.sources.start),
             samples: part.samples(&plan.work),
         })
+    }
+
+    /// Has what was counted so far come to the host, with the last launch.
+    fn fetch_counts(&mut self, compute: &Compute) -> Result<()> {
+        let counted = self.counts.fetch(compute)?;
+        self.counts.begin();
+        if let Some(last) = self.under_way.back_mut() {
+            last.counted = counted;
+        }
+        Ok(())
     }
 
     /// Whether a plan's kernels count.
@@ -247,12 +263,12 @@ impl Wave {
         cost.kernel += time;
         cost.launches += launched.events.len() as u32;
         cost.integrals += match plan.task.rays {
-            Rays::Tiles => u64::from(counted[counts::INTEGRALS]),
+            Rays::Tiles => counted[counts::INTEGRALS],
             Rays::Pixels | Rays::Listed => launched.integrals,
         };
         cost.samples += match plan.task.method {
             Variant::Simpson => launched.samples as u64,
-            Variant::Exact { .. } => u64::from(counted[counts::NODES]),
+            Variant::Exact { .. } => counted[counts::NODES],
         };
         Ok(())
     }

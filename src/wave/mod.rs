@@ -77,7 +77,7 @@ impl Wave {
             open_tiles: OpenTiles::default(),
             counts: Counts::default(),
             depths: UploadedShared::new("the depth image"),
-            pace: Pace::new(),
+            pace: Pace::new(compute.device().device_type),
             cost: FrameCost::default(),
             under_way: VecDeque::new(),
             unwatched: Vec::new(),

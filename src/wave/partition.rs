@@ -4,13 +4,16 @@ use std::ops::Range;
 use std::time::Duration;
 
 use super::pack::layout::Launch;
+use crate::opencl::DeviceType;
 use crate::scene::kinds::KIND_COUNT;
 
 /// How many sources there are of each kind, in the order of the table.
 pub(super) type Counts = [u64; KIND_COUNT];
 
-/// What a launch aims at. Desktop systems reset a GPU after a launch of seconds.
-const TARGET: Duration = Duration::from_millis(40);
+/// What a launch aims at: on a GPU, since desktop systems reset one after a launch of seconds and draw nothing meanwhile;
+/// elsewhere, where each launch costs about 55 us (PoCL 3.1) and only Ctrl-C waits for it.
+const TARGET_ON_GPU: Duration = Duration::from_millis(40);
+const TARGET_ELSEWHERE: Duration = Duration::from_millis(125);
 
 /// Samples of the first launch, before anything was measured: some milliseconds on one slow core.
 const FIRST_SAMPLES: f64 = 4e6;
@@ -24,43 +27,45 @@ const MOST_GROWTH: f64 = 16.0;
 /// How many samples of fields a launch may take.
 #[derive(Debug)]
 pub(super) struct Pace {
+    target: Duration,
     samples: f64,
     kinds: [bool; KIND_COUNT],
 }
 
 impl Pace {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(device: DeviceType) -> Self {
         Self {
+            target: match device {
+                DeviceType::Gpu => TARGET_ON_GPU,
+                _ => TARGET_ELSEWHERE,
+            },
             samples: FIRST_SAMPLES,
             kinds: [false; KIND_COUNT],
         }
     }
 
-    /// As if the device had taken seconds for little.
-    pub(super) fn slow() -> Self {
-        Self {
-            samples: LEAST_SAMPLES,
-            ..Self::new()
-        }
+    /// Goes on as if the device had taken seconds for little.
+    pub(super) fn slow_down(&mut self) {
+        self.samples = LEAST_SAMPLES;
     }
 
     /// Begins a frame: what was measured holds for scenes of the same kinds of sources.
     pub(super) fn begin(&mut self, counts: &Counts) {
         let kinds = counts.map(|count| count > 0);
         if kinds != self.kinds {
-            let samples = self.samples.min(FIRST_SAMPLES);
-            *self = Self { samples, kinds };
+            self.samples = self.samples.min(FIRST_SAMPLES);
+            self.kinds = kinds;
         }
     }
 
     /// Learns from a launch.
     pub(super) fn measured(&mut self, samples: f64, time: Duration) {
-        let possible = samples * TARGET.as_secs_f64() / time.as_secs_f64().max(1e-6);
+        let possible = samples * self.target.as_secs_f64() / time.as_secs_f64().max(1e-6);
         if samples == 0.0 {
             return;
         }
         // A launch much below the pace says more about the overhead than about the device, unless it took too long.
-        if samples > 0.1 * self.samples || time > TARGET {
+        if samples > 0.1 * self.samples || time > self.target {
             self.samples = possible.clamp(LEAST_SAMPLES, MOST_GROWTH * self.samples);
         }
     }
@@ -71,7 +76,10 @@ impl Pace {
         let sources = work.source_count.clamp(1, work.most_sources);
         let samples = f64::from(work.node_count) * sources as f64;
         let affordable = self.samples / samples;
-        let pixels = affordable.min(f64::from(left)) as u32;
+        let pixels = match f64::from(left) <= 2.0 * affordable {
+            true => left,
+            false => affordable as u32,
+        };
         let grains = pixels.max(work.fewest_pixels).div_ceil(work.grain);
         let pixels = grains.saturating_mul(work.grain);
         pixels.min(work.most_pixels()).min(left)
@@ -173,6 +181,7 @@ pub(super) fn launch(part: &Part, counts: &Counts) -> Launch {
     Launch {
         begin: ranges.each_ref().map(|range| range.start),
         end: ranges.each_ref().map(|range| range.end),
+        first_count: 0,
     }
 }
 
@@ -182,7 +191,7 @@ mod tests {
 
     /// Every launch of a frame, at a device that does `rate` samples a second.
     fn frame(pixels: u32, work: &Work, rate: f64) -> Vec<Part> {
-        let mut pace = Pace::new();
+        let mut pace = Pace::new(DeviceType::Gpu);
         let mut parts = Vec::new();
         let mut pixel = 0;
         while pixel < pixels {
@@ -250,7 +259,7 @@ mod tests {
             pixels: 7..9,
             sources: 2..6,
         };
-        let Launch { begin, end } = launch(&part, &counts);
+        let Launch { begin, end, .. } = launch(&part, &counts);
         let range = |kind: usize| (begin[kind], end[kind]);
         assert_eq!((range(0), range(1), range(2)), ((2, 3), (0, 0), (0, 0)));
         assert_eq!((range(3), range(4)), ((0, 2), (0, 1)));

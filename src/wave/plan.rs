@@ -56,7 +56,7 @@ impl Plan {
         let (grain, most_pixels, most_sources) = match task.rays {
             Rays::Tiles => (
                 first_tile_size * image.width,
-                tiles::MOST_PIXELS,
+                tiles::most_pixels(counts.iter().sum()),
                 tiles::MOST_SOURCES,
             ),
             Rays::Pixels | Rays::Listed => (MOST_LANES, u32::MAX, u64::MAX),

@@ -8,7 +8,6 @@ use glam::DVec3;
 
 use super::Wave;
 use super::kernels::{Rays, Task, Variant};
-use super::partition::Pace;
 use crate::error::{Error, Result};
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{Compute, Film, FilmFormat, Pixel, Program};
@@ -64,7 +63,7 @@ impl Wave {
     }
 
     fn check(&mut self, compute: &Compute, task: Task, scene: &Scene) -> Result<()> {
-        self.pace = Pace::slow(); // several launches for pixels, and for sources
+        self.pace.slow_down(); // several launches for pixels, and for sources
         let found = self.draw_known(compute, task, scene)?;
         let plane = ViewPlane::new(&scene.camera, scene.image);
         let tracer = Tracer::new(scene, scene.integration.method);

@@ -23,12 +23,19 @@ pub(super) fn first_size(image: ImageSize) -> u32 {
     (side / 16).next_power_of_two().clamp(64, LARGEST)
 }
 
-/// Pixels of one launch, so that the list of open tiles stays small; a frame of 3840x2160 fits.
-pub(super) const MOST_PIXELS: u32 = 1 << 23;
+/// Bytes of the list of tiles that a launch leaves open, at most; a frame of 3840x2160 and up to 8000 sources fits.
+const MOST_OPEN_BYTES: usize = 256 << 20;
 
-/// Words of 32 sources of one launch, of which a group of work-items holds as many: 1 KiB of the 32 KiB of local memory
+/// Pixels of one launch on so many sources: all passes together may leave a tile open for 48 pixels.
+pub(super) fn most_pixels(sources: u64) -> u32 {
+    let words = sources.min(MOST_SOURCES).div_ceil(32) as usize + KIND_COUNT;
+    let bytes_of_tile = size_of::<u32>() * (PLACE + words) + size_of::<f32>() * LIGHT;
+    (48 * (MOST_OPEN_BYTES / bytes_of_tile)).min(1 << 23) as u32
+}
+
+/// Words of 32 sources of one launch, of which a group of work-items holds as many: 2 KiB of the 32 KiB of local memory
 /// that OpenCL 1.2 promises.
-const MOST_WORDS: u32 = 256;
+const MOST_WORDS: u32 = 512;
 
 /// Sources of one launch. Each kind begins with a new word, so that all but one may leave 31 bits of a word unused.
 pub(super) const MOST_SOURCES: u64 = 32 * (MOST_WORDS as u64 - (KIND_COUNT as u64 - 1));

@@ -219,12 +219,12 @@ tiles(const View view, const FilmPart part, const Integrand integrand, const Lau
       const TilePass pass, __global uint *const restrict open_tiles, __global float *const restrict open_light) {
     __local TileMemory memory;
     const Sources sources = {KINDS(SOURCE_VALUE) spline_pieces};
-    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts);
+    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count);
     const OpenTiles open = {open_tiles, open_light};
     const Screen screen = {&view, depths, integrand.softening2};
     const uint end_row = (part.first + part.count) / view.width;
     const TileTask task = {&screen, &part, &launch, &pass, &sources, &quadrature, end_row};
-    const uint count = pass.level == 0 ? pass.tile_count : 4u * counts[COUNT_OPEN_TILES + pass.level - 1u];
+    const uint count = pass.level == 0 ? pass.tile_count : 4u * quadrature.counts[COUNT_OPEN_TILES + pass.level - 1u];
     for (uint number = get_group_id(0); number < count; number += get_num_groups(0))
         render_tile(&task, number, open, &memory, FILM_ARGUMENT);
 }

@@ -38,10 +38,11 @@ device_struct! {
 }
 
 device_struct! {
-    /// Which sources of each kind a launch takes.
-    Launch [8 * KIND_COUNT] {
+    /// Which sources of each kind a launch takes, and where it counts.
+    Launch [8 * KIND_COUNT + 4] {
         begin: [u32; KIND_COUNT] = 0,
         end: [u32; KIND_COUNT] = 4 * KIND_COUNT,
+        first_count: u32 = 8 * KIND_COUNT,
     }
 }
 
