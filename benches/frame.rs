@@ -156,11 +156,12 @@ fn of_every_source(criterion: &mut Criterion) {
     });
     let mut other = scene.clone();
     other.spheres[0].coefficient *= 1.5;
+    let mut turns = [&other, &scene].into_iter().cycle();
     group.bench_function(
         "a frame with a changed sphere, besides kernels",
         |bencher| {
             bencher.iter_custom(|count| {
-                let frames = (0..count).map(|k| if k % 2 == 0 { &other } else { &scene });
+                let frames = turns.by_ref().take(count as usize);
                 frames.map(&mut besides_kernels).sum()
             });
         },
