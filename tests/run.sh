@@ -39,4 +39,10 @@ if [ -z "${ENERGYWAVE_DEVICE:-}" ]; then
         export ENERGYWAVE_DEVICE=cpu
     fi
 fi
-cargo test --release "$@"
+if [ $# = 0 ] && command -v cargo-nextest >/dev/null; then
+    # A process for each test: drivers build kernels side by side, which threads of one process wait for.
+    cargo nextest run --release --no-fail-fast --status-level fail --final-status-level slow
+    cargo test --release --doc
+else
+    cargo test --release "$@"
+fi

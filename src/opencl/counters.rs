@@ -11,8 +11,8 @@ use crate::error::Result;
 /// Launches that count before the host reads their numbers: a copy for each would cost as much as a small kernel.
 const SETS: usize = 64;
 
-/// Sets of numbers on the device, one for each launch, set to 0 before kernels run and read back after them, both without
-/// waiting.
+/// Sets of numbers on the device, one for each launch, set to 0 before kernels run and read back after them, both
+/// without waiting.
 #[derive(Debug, Default)]
 pub struct Counters<const LEN: usize> {
     buffer: Option<DeviceBuffer<[u32; LEN]>>,

@@ -10,8 +10,8 @@ use crate::scene::kinds::KIND_COUNT;
 /// How many sources there are of each kind, in the order of the table.
 pub(super) type Counts = [u64; KIND_COUNT];
 
-/// What a launch aims at: on a GPU, since desktop systems reset one after a launch of seconds and draw nothing meanwhile;
-/// elsewhere, where each launch costs about 55 us (PoCL 3.1) and only Ctrl-C waits for it.
+/// What a launch aims at: on a GPU, since desktop systems reset one after a launch of seconds and draw nothing
+/// meanwhile; elsewhere, where each launch costs about 55 us (PoCL 3.1) and only Ctrl-C waits for it.
 const TARGET_ON_GPU: Duration = Duration::from_millis(40);
 const TARGET_ELSEWHERE: Duration = Duration::from_millis(125);
 
