@@ -6,6 +6,10 @@ use std::process::Command;
 /// Says in the environment which test the process is for.
 const VARIABLE: &str = "ENERGYWAVE_TEST_APART";
 
+/// An assertion of PoCL 3.1 itself, which one run in 50 with several devices of one CPU ends in, more with an empty
+/// cache: kernels that two of them let go of at the same time. Such a run says nothing, and is made again.
+const ABORT_OF_POCL: &str = "pocl_release_dlhandle_cache: Assertion";
+
 /// Runs a test in a process of its own, with these environment variables. The test is the whole body of a test
 /// function:
 ///
@@ -30,12 +34,21 @@ pub fn run(closure: &str, variables: &[(&str, &str)], test: impl FnOnce()) {
         test();
         return;
     }
-    let output = Command::new(std::env::current_exe().unwrap())
-        .args([name, "--exact", "--nocapture", "--test-threads=1"])
-        .env(VARIABLE, name)
-        .envs(variables.iter().copied())
-        .output()
-        .unwrap();
+    let once = || {
+        Command::new(std::env::current_exe().unwrap())
+            .args([name, "--exact", "--nocapture", "--test-threads=1"])
+            .env(VARIABLE, name)
+            .envs(variables.iter().copied())
+            .output()
+            .unwrap()
+    };
+    let mut output = once();
+    for _ in 0..3 {
+        if !String::from_utf8_lossy(&output.stderr).contains(ABORT_OF_POCL) {
+            break;
+        }
+        output = once();
+    }
     let said = String::from_utf8_lossy(&output.stdout);
     print!("{said}");
     eprint!("{}", String::from_utf8_lossy(&output.stderr));
