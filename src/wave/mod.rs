@@ -183,8 +183,9 @@ impl Wave {
     }
 
     fn rule_for(&mut self, scene: &Scene) -> Rule {
-        let has_squares = self.packed.facts(scene).has_squares;
-        let fitting = Rule::of(scene.integration.method.tolerance(), has_squares);
+        let facts = self.packed.facts(scene);
+        let tolerance = scene.integration.method.tolerance();
+        let fitting = Rule::of(tolerance, facts.has_squares, facts.has_both_signs);
         self.rule.unwrap_or(fitting)
     }
 

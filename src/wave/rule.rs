@@ -15,8 +15,7 @@ pub struct Rule {
 }
 
 /// The least tolerance for which a rule serves, and the rule: `cargo bench --bench rules` shows what each is good for.
-const RULES: [(f64, Rule); 6] = [
-    (1e-1, rule(4, 1.0, 1e-1)),
+const RULES: [(f64, Rule); 5] = [
     (1e-2, rule(8, 1e-1, 1e-3)),
     (1e-3, rule(8, 2e-3, 2e-4)),
     (1e-4, rule(10, 5e-5, 2e-5)),
@@ -26,6 +25,10 @@ const RULES: [(f64, Rule); 6] = [
 
 /// The loosest tolerance whose rule serves squares.
 const MOST_FOR_SQUARES: f64 = 1e-3;
+
+/// By how much less each source may be off where sources of opposite signs cancel: their light is then several times
+/// that of a pixel.
+const CANCELLED: f64 = 1.0 / 30.0;
 
 const fn rule(nodes: u32, smooth_threshold: f32, kinked_threshold: f32) -> Rule {
     Rule {
@@ -39,9 +42,10 @@ const fn rule(nodes: u32, smooth_threshold: f32, kinked_threshold: f32) -> Rule 
 impl Rule {
     /// Chooses the rule that meets a tolerance. Fields that fall off with the squared distance have sharper peaks,
     /// which a loose rule may miss.
-    pub fn of(tolerance: f64, has_squares: bool) -> Self {
+    pub fn of(tolerance: f64, has_squares: bool, has_both_signs: bool) -> Self {
         let most = if has_squares { MOST_FOR_SQUARES } else { 1.0 };
-        let wanted = tolerance.min(most);
+        let share = if has_both_signs { CANCELLED } else { 1.0 };
+        let wanted = tolerance.min(most) * share;
         let serves = |(tolerance, _): &&(f64, Self)| wanted >= *tolerance;
         let [.., (_, strictest)] = RULES;
         RULES
@@ -134,7 +138,7 @@ mod tests {
 
     #[test]
     fn stricter_tolerances_have_stricter_rules() {
-        let rule = |tolerance| Rule::of(tolerance, false);
+        let rule = |tolerance| Rule::of(tolerance, false, false);
         let tolerances = [0.5, 1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 1e-12];
         for pair in tolerances.windows(2) {
             let (loose, strict) = (rule(pair[0]), rule(pair[1]));
@@ -144,5 +148,6 @@ mod tests {
         }
         assert_eq!(rule(1e-3), rule(2e-3));
         assert_ne!(rule(1e-3), rule(0.9e-3));
+        assert_eq!(Rule::of(3e-3, false, true), rule(1e-4));
     }
 }

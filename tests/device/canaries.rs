@@ -43,7 +43,7 @@ fn marks_left(
         is_last: 1,
         ..bytemuck::Zeroable::zeroed()
     };
-    let rule = Rule::of(1e-3, false);
+    let rule = Rule::of(1e-3, false, false);
     let integrand = pack::integrand(&scene, &rule, nodes.len() as u32);
     let launch = layout::Launch {
         begin: [0; KINDS.len()],
@@ -137,7 +137,7 @@ fn to_half(value: f32) -> u16 {
 
 #[test]
 fn nothing_is_written_behind_the_image() {
-    let exact = Rule::of(1e-3, false).definitions();
+    let exact = Rule::of(1e-3, false, false).definitions();
     let tiles = format!("{exact} -D PER_RAY= -D MOST_WORDS=4 -D TILE_WORKERS=1");
     for lanes in lane_widths() {
         for (kernel, method) in [("render", ""), ("render", &exact), ("tiles", &tiles)] {

@@ -6,19 +6,22 @@
 // The host gives the positive nodes of the rule, the outermost first, their weights and those of the null rules as
 // GAUSS_..., and as `threshold` how large the coefficients may be, of the integral.
 
-// Panels that may be open at once, cuts of a ray's panels in all, and the advance of v below which a panel is empty,
-// the share of a panel beyond its outermost node, and the share of the first estimate that errors may be measured by.
+// Panels that may be open at once, cuts of a ray's panels in all, by which factor errors may grow with every cut of
+// their second half, how much worse than its nodes tell a panel with kinks may be, and the share of the first estimate
+// that errors may be measured by.
 #ifndef MOST_CUTS
 #define MOST_CUTS 64
 #endif
 #define MOST_PANELS 24
-#define BEYOND_NODES 0.03f
+#define PATIENCE 1.25f
+#define DOUBT 30.0f
 #define FIRST_ESTIMATE 0.25f
 
 typedef struct {
     KIND_near near;
     Panel map;
     floatv base, from, to;
+    floatv doubt; // how many times worse it may be than its nodes tell
 } KIND_panel;
 
 INLINE KIND_panel KIND_open_panel(const KIND_peaks *const peaks, const Decay decay, const floatv from,
@@ -28,6 +31,7 @@ INLINE KIND_panel KIND_open_panel(const KIND_peaks *const peaks, const Decay dec
     panel.near = KIND_approach(peaks, from, to, &peak, &panel.base);
     panel.map = mapped_panel(decay, peak, from, to, panel.base);
     panel.from = from, panel.to = to;
+    panel.doubt = select(splat(1.0f), splat(DOUBT), peak.is_flat);
     return panel;
 }
 
@@ -53,10 +57,19 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
     KIND_look_ahead(&panel->near, left_s, right_s, GAUSS_PAIRS);
 #endif
     floatv sum = splat(0.0f), even = splat(0.0f), odd = splat(0.0f);
+#if KIND_HAS(jumps)
+    KIND_view view = KIND_view_from(peaks, panel->from, panel->to);
+#endif
 #pragma unroll
     for (int k = 0; k < GAUSS_PAIRS; ++k) {
         const floatv right = right_v[k] * KIND_near_field(&panel->near, right_s[k]);
+#if KIND_HAS(jumps)
+        KIND_see(peaks, &view, &view.right, &panel->near, right_v[k] * weight[k], k == 0);
+#endif
         const floatv left = left_v[k] * KIND_near_field(&panel->near, left_s[k]);
+#if KIND_HAS(jumps)
+        KIND_see(peaks, &view, &view.left, &panel->near, left_v[k] * weight[k], k == 0);
+#endif
         const floatv both = right + left;
         sum = fma(both, splat(weight[k]), sum);
         even = fma(both, splat(null_even[k]), even);
@@ -65,13 +78,13 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
     const floatv scale = LN_2 * decay.strength * map->half_length;
     const floatv middle = panel->base + parameter_of(map, map->middle + (map->rising - map->falling));
 #if KIND_HAS(jumps)
-    const intv is_broken =
-        KIND_is_broken(peaks, panel->from, panel->to, panel->base + left_s[0], panel->base + right_s[0]);
+    const floatv unseen = scale * KIND_unseen(peaks, &view, sum);
 #else
-    const intv is_broken = (intv)(0);
+    const floatv unseen = splat(0.0f);
 #endif
-    const PanelSum result = {scale * sum, scale * scale * fma(even, even, odd * odd),
-                             clamp(middle, panel->from, panel->to), is_broken};
+    const floatv doubtful = panel->doubt * scale;
+    const PanelSum result = {scale * sum, doubtful * doubtful * fma(even, even, odd * odd),
+                             clamp(middle, panel->from, panel->to), unseen};
     return result;
 }
 
@@ -105,9 +118,9 @@ PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources,
                              const Quadrature *const quadrature) {
     const Decay decay = quadrature->decay;
 #if KIND_HAS(kinks)
-    const float threshold = quadrature->kinked_threshold;
+    float threshold = quadrature->kinked_threshold;
 #else
-    const float threshold = quadrature->smooth_threshold;
+    float threshold = quadrature->smooth_threshold;
 #endif
     const KIND_peaks peaks = KIND_peaks_along(ray, sources, index);
     floatv all_from[MOST_PANELS], all_to[MOST_PANELS], integral;
@@ -161,8 +174,7 @@ PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources,
                 continue;
             }
             const floatv allowed = threshold * max(fabs(integral + value), FIRST_ESTIMATE * fabs(estimate));
-            const intv is_unseen = panel.is_broken & (BEYOND_NODES * fabs(value) > allowed);
-            const intv is_rough = (panel.unresolved2 > allowed * allowed) | is_unseen;
+            const intv is_rough = (panel.unresolved2 > allowed * allowed) | (panel.unseen > allowed);
             if (cuts < most_cuts && open + 2 <= MOST_PANELS && any_lane(is_rough & !is_done)) {
 #if KIND_HAS(jumps)
                 const floatv cut = KIND_split(&peaks, from, to, panel.middle);
@@ -172,7 +184,8 @@ PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources,
                 all_from[open] = cut, all_to[open] = select(to, cut, is_empty);
                 all_from[open + 1] = from, all_to[open + 1] = select(cut, from, is_empty);
                 open += 2;
-                ++cuts;
+                if (++cuts > most_cuts / 2)
+                    threshold *= PATIENCE;
                 continue;
             }
         }

@@ -17,11 +17,31 @@
 typedef struct {
     floatv from, to;
     floatv light_from, light_to;
+    floatv from_rest, to_rest; // what float32 leaves of the ends
 } Stretch;
 
-Stretch evenly_lit(const floatv from, const floatv to) {
-    const Stretch stretch = {from, to, splat(1.0f), splat(1.0f)};
+// A parameter s with more digits than float32 has.
+typedef struct {
+    floatv s, rest;
+} Cut;
+
+Cut cut_at(const floatv s) {
+    const Cut cut = {s, splat(0.0f)};
+    return cut;
+}
+
+Cut select_cut(const Cut a, const Cut b, const intv is_b) {
+    const Cut cut = {select(a.s, b.s, is_b), select(a.rest, b.rest, is_b)};
+    return cut;
+}
+
+Stretch between(const Cut from, const Cut to) {
+    const Stretch stretch = {from.s, to.s, splat(1.0f), splat(1.0f), from.rest, to.rest};
     return stretch;
+}
+
+Stretch evenly_lit(const floatv from, const floatv to) {
+    return between(cut_at(from), cut_at(to));
 }
 
 // What a stretch comes to in v: index 0 its beginning, 1 its end.
@@ -47,7 +67,7 @@ INLINE Ends ends_of(const Quadratic *const distance2, const Decay decay, const S
     ends.f1 = 0.5f * ends.n1 * twice_sqrt(fma(x1, x1, least));
     ends.f0f1 = ends.f0 * ends.f1;
     ends.g = ends.n0 * ends.n1 * fma(x0, x1, least);
-    const floatv x_pole = fma(splat(-decay.beta), distance2->slope, distance2->offset);
+    const floatv x_pole = along_at(distance2, splat(-decay.beta), splat(0.0f));
     ends.rate = decay.beta > 0.0f ? decay.beta * distance2->slope : distance2->slope;
     ends.a = decay.beta > 0.0f ? fma(x_pole, x_pole, least) : ends.rate * ends.rate;
     return ends;

@@ -8,11 +8,12 @@
 #include "decay.h"
 
 // The advance of v up to which a panel is empty, as a share of the advance from the beginning of the ray.
-#define SHORTEST_PANEL 1e-7f
+#define SHORTEST_PANEL 1e-13f
 
 // A complex zero of the squared distance along the ray, as a parameter s.
 typedef struct {
     floatv re, im; // im > 0
+    intv is_flat;  // whether the floor of distances cuts the peak off, with a kink on both sides
 } Peak;
 
 // Seen from the point `base` of the panel, so that nodes next to a core keep their digits.
@@ -29,7 +30,7 @@ typedef struct {
     floatv integral;
     floatv unresolved2; // the squared size of what the rule cannot tell from noise, of the same kind as the integral
     floatv middle;      // where to cut the panel in two, as a parameter s
-    intv is_broken;     // whether it must be cut whatever the nodes say
+    floatv unseen;      // what may lie between its nodes, of the same kind
 } PanelSum;
 
 // Returns whether so little of v passes, beside what has passed before, that it adds nothing.
@@ -41,22 +42,21 @@ intv is_empty_panel(const Decay decay, const floatv from, const floatv to) {
 
 // Returns the squared distance at which a ray passes a core, raised where that is below the floor. A ray that passes a
 // core at a distance h below the floor f sees the field cut off at f. Where core and ray are straight its integral is
-// that of a field without floor past the core at the distance (c + f) e^(-c/f), c^2 = f^2 - h^2: a polynomial gives the
-// square of that from the squares of h and f, within 0.1 %. For the inverse square the integral is 2 c / f^2 + 4 / h
-// atan(h / (c + f)) instead of pi over the distance.
+// that of a field without floor past the core at the distance (c + f) e^(-c/f), c^2 = f^2 - h^2. For the inverse square
+// the integral is 2 c / f^2 + 4 / h atan(h / (c + f)) instead of pi over the distance.
 INLINE floatv floored(const floatv least, const floatv floor2, const uint is_square) {
     const intv is_below = least < floor2;
     if (!any_lane(is_below))
         return least;
     const floatv t = min(least * inverse(floor2), 1.0f);
-    const floatv c = 0.5f * twice_sqrt(max(1.0f - t, 1e-30f)), per_sum = inverse(1.0f + c);
-    const floatv field = 2.0f * c + 4.0f * per_sum * arctangent_ratio((1.0f - c) * per_sum);
-    const floatv raised_square = M_PI_F * M_PI_F * inverse(field * field);
-    const floatv raised =
-        is_square
-            ? raised_square
-            : fma(fma(fma(fma(splat(0.2287136f), t, splat(-0.2680140f)), t, splat(0.2481982f)), t, splat(0.2482847f)),
-                  t, splat(0.5418592f));
+    const floatv c = 0.5f * twice_sqrt(max(1.0f - t, 1e-30f)), sum = 1.0f + c, per_sum = inverse(sum);
+    floatv raised;
+    if (is_square) {
+        const floatv field = 2.0f * c + 4.0f * per_sum * arctangent_ratio((1.0f - c) * per_sum);
+        raised = M_PI_F * M_PI_F * inverse(field * field);
+    } else {
+        raised = sum * sum * power_of_two(-2.0f / LN_2 * c);
+    }
     return select(least, raised * floor2, is_below);
 }
 
@@ -64,7 +64,7 @@ INLINE floatv floored(const floatv least, const floatv floor2, const uint is_squ
 Peak nearer_peak(const Peak a, const Peak b, const floatv from, const floatv to) {
     const floatv to_a = a.re - clamp(a.re, from, to), to_b = b.re - clamp(b.re, from, to);
     const intv is_b = fma(to_b, to_b, b.im * b.im) < fma(to_a, to_a, a.im * a.im);
-    const Peak nearer = {select(a.re, b.re, is_b), select(a.im, b.im, is_b)};
+    const Peak nearer = {select(a.re, b.re, is_b), select(a.im, b.im, is_b), a.is_flat | b.is_flat};
     return nearer;
 }
 

@@ -13,8 +13,12 @@ INLINE floatv without_floor(const Quadratic *const distance2, const Decay decay,
 Stretch part_of(const Stretch stretch, const floatv from, const floatv to) {
     const floatv per_length = inverse(max(stretch.to - stretch.from, 1e-30f));
     const floatv growth = (stretch.light_to - stretch.light_from) * per_length;
-    const Stretch part = {from, to, fma(growth, from - stretch.from, stretch.light_from),
-                          fma(growth, to - stretch.from, stretch.light_from)};
+    const Stretch part = {from,
+                          to,
+                          fma(growth, from - stretch.from, stretch.light_from),
+                          fma(growth, to - stretch.from, stretch.light_from),
+                          splat(0.0f),
+                          splat(0.0f)};
     return part;
 }
 
@@ -34,9 +38,9 @@ floatv with_floor(const Quadratic *const distance2, const floatv floor2, const D
     const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
     const floatv reach = 0.5f * twice_sqrt(max(floor2 - distance2->least, 1e-36f));
     const floatv x_begin = clamp(-reach, x0, x1), x_end = clamp(reach, x0, x1);
-    floatv begin = clamp((x_begin - distance2->offset) * per_slope, stretch.from, stretch.to);
+    floatv begin = clamp(fma(x_begin - distance2->ahead, per_slope, distance2->nearest), stretch.from, stretch.to);
     begin = select(select(begin, stretch.from, x0 >= -reach), stretch.to, x1 <= -reach);
-    floatv end = clamp((x_end - distance2->offset) * per_slope, stretch.from, stretch.to);
+    floatv end = clamp(fma(x_end - distance2->ahead, per_slope, distance2->nearest), stretch.from, stretch.to);
     end = select(select(end, stretch.to, x1 <= reach), stretch.from, x0 >= reach);
     const Stretch before = part_of(stretch, stretch.from, begin), after = part_of(stretch, end, stretch.to);
     const intv is_all = (x0 > -reach) & (x1 < reach);
@@ -52,8 +56,8 @@ floatv with_floor(const Quadratic *const distance2, const floatv floor2, const D
 // Integrates over a stretch. Lengths are doubled, the integral is not.
 INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distance2, const floatv floor2,
                             const Decay decay, const uint is_square) {
-    const floatv x0 = fma(distance2->slope, stretch.from, distance2->offset);
-    const floatv x1 = fma(distance2->slope, stretch.to, distance2->offset);
+    const floatv x0 = along_at(distance2, stretch.from, stretch.from_rest);
+    const floatv x1 = along_at(distance2, stretch.to, stretch.to_rest);
     floatv over_v = without_floor(distance2, decay, stretch, x0, x1, is_square);
     const intv is_floored = distance2->least < floor2;
     if (any_lane(is_floored))
@@ -61,9 +65,50 @@ INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distan
     return (is_square ? 4.0f : 2.0f) * decay.strength * over_v;
 }
 
-// Returns the parameter s at which a ray climbs through height 0 over a plane, where a stretch ends; a ray that never
-// does stays on its side.
-INLINE floatv climbs_through(const floatv height, const floatv height_slope, const floatv end) {
-    const floatv slope = select(height_slope, splat(1e-30f), fabs(height_slope) < 1e-30f);
-    return clamp(-height / slope, 0.0f, end);
+// A height over a plane, along a ray.
+typedef struct {
+    floatv at, slope;
+    finev fine_at, fine_slope;
+} Height;
+
+// A ray whose height does not leave 0 by more than rounding runs within the plane.
+#ifdef cl_khr_fp64
+#define WITHIN_PLANE 1e-12f
+#else
+#define WITHIN_PLANE 1e-6f
+#endif
+
+// Returns a ray's height over the plane through a point, perpendicular to a direction.
+INLINE Height height_over(const Ray *const ray, const float4 point, const float4 point_rest, const fine3v direction) {
+    const fine3v from_point = fine_between(ray, splat(0.0f), point, point_rest);
+    Height height;
+    height.fine_at = fine_dot3(from_point, direction);
+    height.fine_slope = to_finev(ray->stretch) * fine_dot3(ray->fine_toward, direction);
+    height.at = from_finev(height.fine_at);
+    height.slope = from_finev(height.fine_slope);
+    const float3v size = from_fine3(from_point);
+    const floatv nothing = WITHIN_PLANE * (fabs(size.x) + fabs(size.y) + fabs(size.z) + ray->length);
+    const intv is_within = max(fabs(height.at), fabs(height.at + height.slope)) < nothing;
+    height.at = select(height.at, splat(0.0f), is_within);
+    height.slope = select(height.slope, splat(0.0f), is_within);
+    return height;
+}
+
+floatv height_at(const Height *const height, const floatv s) {
+    return fma(height->slope, s, height->at);
+}
+
+// Returns where a value that is linear along a ray is 0; a ray where it never is stays on its side.
+floatv zero_along(const floatv at, const floatv slope, const floatv end) {
+    return clamp(-at / select(slope, splat(1e-30f), fabs(slope) < 1e-30f), 0.0f, end);
+}
+
+// Returns where a ray climbs through a plane: there a stretch ends.
+INLINE Cut climbs_through(const Height *const height, const floatv end) {
+    const floatv s = zero_along(height->at, height->slope, end);
+    const floatv missed = from_finev(fma(height->fine_slope, to_finev(s), height->fine_at));
+    const intv is_there = (s > 0.0f) & (s < end);
+    const floatv slope = select(splat(1.0f), height->slope, is_there);
+    const Cut cut = {s, select(splat(0.0f), clamp(-missed / slope, -1e-6f, 1e-6f), is_there)};
+    return cut;
 }

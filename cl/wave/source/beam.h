@@ -30,10 +30,10 @@ CHECK_SIZE(Beam, SIZEOF_BEAM);
 
 // Lengths are doubled, but for heights.
 typedef struct {
-    Quadratic to_line, to_tip;   // squared distances
-    floatv height, height_slope; // over the plane
-    floatv taper, taper_slope;   // the same over the end of the taper, of its length
-    float line, cap, sphere;     // coefficients
+    Quadratic to_line, to_tip; // squared distances
+    Height height;             // over the plane
+    floatv taper, taper_slope; // the same over the end of the taper, of its length
+    float line, cap, sphere;   // coefficients
     bool has_taper;
     floatv floor2;
     uint is_square;
@@ -42,16 +42,14 @@ typedef struct {
 INLINE beam_path beam_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Beam *const beam = &sources->beam_list[index];
     const fine3v direction = fine3(beam->direction, beam->direction_rest);
-    const fine3v from_tip = fine_between(ray, splat(0.0f), beam->tip, beam->tip_rest);
     beam_path path;
     path.to_line = distance2_to_line(ray, beam->point, beam->point_rest, beam->direction, beam->direction_rest);
     path.to_tip = distance2_to_point(ray, beam->tip, beam->tip_rest);
-    path.height = from_finev(fine_dot3(from_tip, direction));
-    path.height_slope = ray->stretch * from_finev(fine_dot3(ray->fine_toward, direction));
+    path.height = height_over(ray, beam->tip, beam->tip_rest, direction);
     path.line = beam->line, path.cap = beam->cap, path.sphere = beam->sphere;
     const fine per_taper = (fine)beam->per_taper + (fine)beam->per_taper_rest;
-    path.taper = from_finev(fma(fine_dot3(from_tip, direction), (finev)(per_taper), (finev)(1.0f)));
-    path.taper_slope = path.height_slope * beam->per_taper;
+    path.taper = from_finev(fma(path.height.fine_at, (finev)(per_taper), (finev)(1.0f)));
+    path.taper_slope = path.height.slope * beam->per_taper;
     path.has_taper = beam->per_taper > 0.0f;
     path.floor2 = 4.0f * ray->floor2;
     path.is_square = IS_SQUARE(beam);
@@ -59,7 +57,7 @@ INLINE beam_path beam_along(const Ray *const ray, const Sources *const sources, 
 }
 
 floatv beam_field(const beam_path *const path, const floatv s) {
-    const floatv height = fma(path->height_slope, s, path->height);
+    const floatv height = height_at(&path->height, s);
     const floatv per_line = twice_inverse_sqrt(max(quadratic_at(&path->to_line, s), path->floor2));
     const floatv per_tip = twice_inverse_sqrt(max(quadratic_at(&path->to_tip, s), path->floor2));
     const floatv of_line = profiled(per_line, path->is_square), of_tip = profiled(per_tip, path->is_square);
@@ -73,16 +71,17 @@ INLINE floatv beam_integral(const Ray *const ray, const Sources *const sources, 
                             const Quadrature *const quadrature) {
     const beam_path path = beam_along(ray, sources, index);
     const Decay decay = quadrature->decay;
-    const floatv none = splat(0.0f);
-    const intv is_rising = path.height_slope > -1e-30f;
-    const floatv tip = climbs_through(path.height, path.height_slope, ray->end);
-    const Stretch ahead = evenly_lit(select(none, tip, is_rising), select(tip, ray->end, is_rising));
-    const Stretch behind = evenly_lit(select(tip, none, is_rising), select(ray->end, tip, is_rising));
+    const Cut begin = cut_at(splat(0.0f)), end = cut_at(ray->end);
+    const intv is_rising = path.height.slope > -1e-30f;
+    const Cut tip = climbs_through(&path.height, ray->end);
+    const Stretch ahead = between(select_cut(begin, tip, is_rising), select_cut(tip, end, is_rising));
+    const Stretch behind = between(select_cut(tip, begin, is_rising), select_cut(end, tip, is_rising));
 
     floatv light = path.line * integral_over(ahead, &path.to_line, path.floor2, decay, path.is_square);
     if (path.has_taper) {
-        const floatv taper = climbs_through(path.taper, path.taper_slope, ray->end);
-        Stretch fading = {min(tip, taper), max(tip, taper), none, none};
+        const Cut taper = cut_at(zero_along(path.taper, path.taper_slope, ray->end));
+        const intv is_later = taper.s > tip.s;
+        Stretch fading = between(select_cut(taper, tip, is_later), select_cut(tip, taper, is_later));
         fading.light_from = clamp(fma(path.taper_slope, fading.from, path.taper), 0.0f, 1.0f);
         fading.light_to = clamp(fma(path.taper_slope, fading.to, path.taper), 0.0f, 1.0f);
         light += path.line * integral_over(fading, &path.to_line, path.floor2, decay, path.is_square);
@@ -90,7 +89,7 @@ INLINE floatv beam_integral(const Ray *const ray, const Sources *const sources, 
         light += path.cap * integral_over(behind, &path.to_tip, path.floor2, decay, path.is_square);
     }
     if (path.sphere != 0.0f) {
-        const Stretch all = evenly_lit(none, ray->end);
+        const Stretch all = between(begin, end);
         light += path.sphere * integral_over(all, &path.to_tip, path.floor2, decay, path.is_square);
     }
     return light;
@@ -100,14 +99,14 @@ INLINE floatv beam_integral(const Ray *const ray, const Sources *const sources, 
 Clearance beam_clearance(const Ray *const ray, const Sources *const sources, const uint index, const float pixel_step) {
     const beam_path path = beam_along(ray, sources, index);
     const floatv s = clamp(nearest_along(&path.to_line), 0.0f, ray->end);
-    const floatv ahead = path.has_taper ? fma(path.taper_slope, s, path.taper) : fma(path.height_slope, s, path.height);
+    const floatv ahead = path.has_taper ? fma(path.taper_slope, s, path.taper) : height_at(&path.height, s);
     const Clearance of_line = quadratic_clearance(ray, &path.to_line, pixel_step);
     const Clearance of_tip = quadratic_clearance(ray, &path.to_tip, pixel_step);
     Clearance clearance = clear_by(select(of_tip.distance2, min(of_line.distance2, of_tip.distance2), ahead >= 0.0f));
     // Where line and cap differ, light has a kink where the plane through the tip passes the beginning or the end of
     // rays.
     const floatv jump = splat(!path.has_taper && path.line != path.cap ? 1.0f : 0.0f);
-    clearance.seen[1] = select(splat(0.0f), jump, path.height < 0.0f);
-    clearance.seen[2] = select(splat(0.0f), jump, fma(path.height_slope, ray->end, path.height) < 0.0f);
+    clearance.seen[1] = select(splat(0.0f), jump, path.height.at < 0.0f);
+    clearance.seen[2] = select(splat(0.0f), jump, height_at(&path.height, ray->end) < 0.0f);
     return clearance;
 }

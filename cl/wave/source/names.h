@@ -26,8 +26,11 @@
 #define KIND_closed JOIN(KIND, _closed)         // KIND_HAS(closed_ends)
 #define KIND_is_uneven JOIN(KIND, _is_uneven)   // KIND_HAS(dark_parts)
 #define KIND_more_cuts JOIN(KIND, _more_cuts)   // KIND_HAS(more_cuts)
-#define KIND_is_broken JOIN(KIND, _is_broken)   // KIND_HAS(jumps)
-#define KIND_split JOIN(KIND, _split)           // KIND_HAS(jumps)
+#define KIND_view JOIN(KIND, _view)             // KIND_HAS(jumps), with what follows
+#define KIND_view_from JOIN(KIND, _view_from)
+#define KIND_see JOIN(KIND, _see)
+#define KIND_unseen JOIN(KIND, _unseen)
+#define KIND_split JOIN(KIND, _split)
 
 // What the templates make of that.
 #define KIND_emission JOIN(KIND, _emission) // ../radiance.h

@@ -8,7 +8,8 @@
 typedef struct {
     floatv slope;
     floatv offset;
-    floatv least; // never 0: its root may be divided by
+    floatv least;          // never 0: its root may be divided by
+    floatv nearest, ahead; // the parameter of the least, or next to it, and slope s + offset there
 } Quadratic;
 
 // Returns |start + s span|^2 for a span of length `slope`.
@@ -16,17 +17,22 @@ INLINE Quadratic squared_length_along(const float3v start, const float3v span, c
     const floatv per_slope = inverse(slope);
     const floatv ahead = -dot3(start, span) * per_slope; // to the nearest point, a length
     const float3v closest = fma3(span, ahead * per_slope, start);
-    const Quadratic q = {slope, -ahead, max(dot3(closest, closest), 1e-30f)};
+    const Quadratic q = {slope, -ahead, max(dot3(closest, closest), 1e-30f), ahead * per_slope, splat(0.0f)};
     return q;
 }
 
-// Returns the squared length of the vector at the parameter of the least, which float32 has missed by a little, without
-// its part along the span. Never 0.
-floatv squared_length_beside(const Quadratic *const q, const float3v start, const float3v span) {
+// Refines a squared length by the vector at the parameter of the least, which float32 has missed by a little.
+INLINE void refine(Quadratic *const q, const float3v at_nearest, const float3v span) {
     const floatv per_slope = inverse(q->slope);
-    const floatv missed = clamp(-dot3(start, span) * per_slope * per_slope, -1e-4f, 1e-4f);
-    const float3v beside = fma3(span, missed, start);
-    return max(dot3(beside, beside), 1e-30f);
+    q->ahead = dot3(at_nearest, span) * per_slope;
+    const float3v beside = fma3(span, -q->ahead * per_slope, at_nearest);
+    q->least = max(dot3(beside, beside), 1e-30f);
+    q->offset = fma(-q->slope, q->nearest, q->ahead);
+}
+
+// Returns slope s + offset at the parameter s + rest, with all digits next to the least.
+floatv along_at(const Quadratic *const q, const floatv s, const floatv rest) {
+    return fma(q->slope, (s - q->nearest) + rest, q->ahead);
 }
 
 floatv length3(const float3v v) {
@@ -35,12 +41,12 @@ floatv length3(const float3v v) {
 
 // Returns the parameter s of the least.
 floatv nearest_along(const Quadratic *const q) {
-    return -q->offset * inverse(q->slope);
+    return q->nearest;
 }
 
 // Returns the same with all lengths doubled, softened.
 Quadratic doubled(const Quadratic q, const floatv softening2) {
-    const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, 4.0f * (q.least + softening2)};
+    const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, 4.0f * (q.least + softening2), q.nearest, 2.0f * q.ahead};
     return d;
 }
 
@@ -53,21 +59,26 @@ floatv quadratic_at(const Quadratic *const q, const floatv s) {
 INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, const float4 point_rest) {
     const float3v from_point = subtract3(ray->origin, uniform3(point));
     Quadratic distance2 = squared_length_along(from_point, ray->span, ray->length);
-    const fine3v closest = fine_between(ray, nearest_along(&distance2), point, point_rest);
-    distance2.least = squared_length_beside(&distance2, from_fine3(closest), ray->span);
+    const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
+    refine(&distance2, from_fine3(closest), ray->span);
     return doubled(distance2, ray->softening2);
 }
+
+// The sine of the angle between a ray and a line below which float32 has too few digits of it.
+#define ALONG 0.03f
 
 // Returns the squared distance from a ray to a line. The distance of P is |(P - M) x D|, a cross product instead of the
 // difference of squares that Watanabe, Abe, Konno 2015, eq. 3 prints, which cancels near the line.
 INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, const float4 point_rest,
                                    const float4 direction, const float4 direction_rest) {
     const float3v along = uniform3(direction);
+    const fine3v fine_along = fine3(direction, direction_rest);
     const float3v from_point = subtract3(ray->origin, uniform3(point));
-    const float3v span = cross3(ray->span, along);
+    float3v span = cross3(ray->span, along);
+    if (any_lane(dot3(span, span) < ALONG * ALONG * ray->length * ray->length))
+        span = scale3(from_fine3(fine_cross3(ray->fine_toward, fine_along)), ray->stretch);
     Quadratic distance2 = squared_length_along(cross3(from_point, along), span, length3(span));
-    const fine3v closest = fine_between(ray, nearest_along(&distance2), point, point_rest);
-    const float3v from_line = from_fine3(fine_cross3(closest, fine3(direction, direction_rest)));
-    distance2.least = squared_length_beside(&distance2, from_line, span);
+    const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
+    refine(&distance2, from_fine3(fine_cross3(closest, fine_along)), span);
     return doubled(distance2, ray->softening2);
 }

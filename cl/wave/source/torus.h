@@ -99,6 +99,8 @@ INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const 
     peaks.second.re = middle + root_re;
     peaks.first.im = 0.5f * twice_sqrt(fma(below, below, blur2)) * per_length;
     peaks.second.im = 0.5f * twice_sqrt(fma(above, above, blur2)) * per_length;
+    peaks.first.is_flat = below * below < ray->floor2;
+    peaks.second.is_flat = above * above < ray->floor2;
     return peaks;
 }
 
@@ -208,6 +210,7 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     near.floor2 = select(near.floor2, 0.5f * near.floor2, is_thin);
     peak->re = select(peak->re - *base, ahead, is_next);
     peak->im = select(peak->im, 0.5f * twice_sqrt(lifted * per_slope2), is_next);
+    peak->is_flat &= !is_thin;
     return near;
 }
 

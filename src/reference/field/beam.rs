@@ -48,10 +48,18 @@ impl Parts for Beam {
     }
 }
 
+/// Returns how far ahead of the plane through a beam's tip a point lies; 0 where only rounding tells it from the plane.
+fn ahead_of(tip: DVec3, direction: DVec3, point: DVec3) -> f64 {
+    let from_tip = point - tip;
+    let ahead = from_tip.dot(direction);
+    let rounding = 1e-13 * (from_tip.abs() + tip.abs()).element_sum();
+    if ahead.abs() < rounding { 0.0 } else { ahead }
+}
+
 impl Field for HalfLine {
     fn sample(&self, point: DVec3) -> Sample {
         let from_tip = point - self.tip;
-        let ahead = from_tip.dot(self.direction);
+        let ahead = ahead_of(self.tip, self.direction, point);
         Sample {
             distance2: from_tip.cross(self.direction).length_squared(),
             intensity: match self.taper_length {
@@ -76,7 +84,7 @@ impl Field for Cap {
         let from_tip = point - self.tip;
         Sample {
             distance2: from_tip.length_squared(),
-            intensity: f64::from(from_tip.dot(self.direction) < 0.0),
+            intensity: f64::from(ahead_of(self.tip, self.direction, point) < 0.0),
         }
     }
 

@@ -47,7 +47,13 @@ impl Pack for scene::Curve {
         match self.intensity.as_deref() {
             // A point is nearest at t = 0, whatever the series holds beyond.
             Some([first, ..]) if b0 == b1 && b1 == b2 => coefficient *= first,
-            Some(series) => pieces.extend(spline_pieces(series)),
+            Some(series) => {
+                // What the kernels call unseen is measured by an intensity of 1.
+                let most = series.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
+                let per_most = if most > 0.0 { most.recip() } else { 1.0 };
+                coefficient *= most;
+                pieces.extend(spline_pieces(series, per_most));
+            }
             None => {}
         }
         let spline = begin as u32..pieces.len() as u32;
@@ -111,8 +117,8 @@ fn curve(
 
 /// Returns the polynomial pieces of the clamped uniform quadratic B-spline (2015, eq. 14-16): each is a quadratic
 /// Bezier whose inner control value is the weight, and whose ends are the means of two weights, or an end weight
-/// itself.
-fn spline_pieces(series: &[f64]) -> impl Iterator<Item = SplinePiece> {
+/// itself; all times a scale.
+fn spline_pieces(series: &[f64], scale: f64) -> impl Iterator<Item = SplinePiece> {
     let last = series.len() - 1;
     let joint = move |i: usize| match i {
         0 => series[0],
@@ -122,9 +128,9 @@ fn spline_pieces(series: &[f64]) -> impl Iterator<Item = SplinePiece> {
     (0..last - 1).map(move |i| {
         let (from, control, to) = (joint(i), series[i + 1], joint(i + 1));
         SplinePiece {
-            c0: from as f32,
-            c1: (2.0 * (control - from)) as f32,
-            c2: (from - 2.0 * control + to) as f32,
+            c0: (scale * from) as f32,
+            c1: (scale * 2.0 * (control - from)) as f32,
+            c2: (scale * (from - 2.0 * control + to)) as f32,
             padding: 0.0,
         }
     })
@@ -142,7 +148,7 @@ mod tests {
             vec![2.0, 5.0, 3.0],
             vec![0.1, 0.9, 0.4, 0.7],
         ] {
-            let pieces: Vec<_> = spline_pieces(&series).collect();
+            let pieces: Vec<_> = spline_pieces(&series, 0.5).collect();
             assert_eq!(pieces.len(), series.len() - 2);
             for k in 0..=100 {
                 let t = f64::from(k) / 100.0;
@@ -152,7 +158,7 @@ mod tests {
                 let piece = pieces[index];
                 let value =
                     f64::from(piece.c0) + x * (f64::from(piece.c1) + x * f64::from(piece.c2));
-                let expected = b_spline(&series, t);
+                let expected = 0.5 * b_spline(&series, t);
                 assert!((value - expected).abs() < 1e-6, "{t}: {value} {expected}");
             }
         }

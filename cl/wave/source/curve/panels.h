@@ -134,12 +134,13 @@ INLINE floatv curve_closed_form(const curve_peaks *const peaks, const Decay deca
     const curve_path *const path = &peaks->path;
     floatv least;
     const floatv nearest = closest_to_core(path, peaks->span2, x, &least);
-    if (any_lane(least < 1e-5f * peaks->span2)) {
-        const float3v offset = offset_from_core(peaks, nearest, x);
-        least = max(dot3(offset, offset), 1e-30f);
-    }
     const floatv length = 0.5f * twice_sqrt(peaks->span2);
-    const Quadratic to_end = {length, -length * nearest, least + path->softening2};
+    Quadratic to_end = {length, -length * nearest, least, nearest, splat(0.0f)};
+    if (any_lane(least < 1e-5f * peaks->span2)) {
+        const float3v span = {path->along.slope, path->across.slope, path->normal.slope};
+        refine(&to_end, offset_from_core(peaks, nearest, x), span);
+    }
+    to_end.least += path->softening2;
     const floatv integral = integral_over(evenly_lit(from, to), &to_end, path->floor2, decay, path->is_square);
     return path->spline_count ? integral * curve_intensity(path, x) : integral;
 }
@@ -204,9 +205,11 @@ INLINE bool curve_is_uneven(const curve_peaks *const peaks) {
     return peaks->path.spline_count > 0;
 }
 
-// Returns further cuts: every piece of a local intensity may need panels of its own.
+// Returns further cuts: every piece of a local intensity may need panels of its own, and what is dark to nodes all
+// around must be found.
 INLINE uint curve_more_cuts(const curve_peaks *const peaks) {
-    return 4 * peaks->path.spline_count;
+    const uint pieces = peaks->path.spline_count;
+    return pieces ? 128 + 4 * pieces : 0;
 }
 
 curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is_b) {
@@ -214,21 +217,59 @@ curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is
     return sight;
 }
 
-// Returns whether the nearest point jumps between an end of a panel and the outermost node, unseen by all others: the
-// field has a kink there, which counts when tolerances are tight, and with a local intensity a jump. Or whether a panel
-// spans so many pieces of a local intensity that its nodes cannot see them all.
-INLINE intv curve_is_broken(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv first,
-                            const floatv last) {
+// What the nodes of a panel see, from its ends inwards.
+typedef struct {
+    floatv right, left; // x of the points nearest to what was last asked for on either side
+    floatv leap;        // the farthest from one such x to the next
+    floatv first_leap;  // that from an end to the outermost node
+    floatv step;        // how much the local intensity changes there
+    floatv plain;       // sum over the nodes of weight times field without intensity
+} curve_view;
+
+#define PASSED_BETWEEN 0.15f // the share of a panel between two nodes,
+#define BEYOND_NODES 0.03f   // and beyond its outermost one;
+#define BEYOND_KINKS 5e-4f   // what a kink there may come to, about half the square of that
+
+// Begins with what is seen from the ends of a panel.
+INLINE curve_view curve_view_from(const curve_peaks *const peaks, const floatv from, const floatv to) {
     const curve_path *const path = &peaks->path;
+    const floatv inside = 1e-4f * (to - from), none = splat(0.0f);
+    curve_view view = {none, none, none, none, none, none};
 #ifdef COARSE
     if (!path->spline_count)
-        return from > to;
+        return view;
 #endif
-    const floatv inside = 1e-4f * (to - from);
-    const floatv at_begin = curve_seen_from(path, from + inside).x, at_end = curve_seen_from(path, to - inside).x;
-    const floatv begin = at_begin - curve_seen_from(path, first).x, end = at_end - curve_seen_from(path, last).x;
-    const floatv pieces = fabs(at_end - at_begin) * (float)path->spline_count;
-    return (max(fabs(begin), fabs(end)) > 0.1f) | (pieces > 4.0f);
+    view.right = curve_seen_from(path, to - inside).x;
+    view.left = curve_seen_from(path, from + inside).x;
+    return view;
+}
+
+// Takes note of what a node sees, whose neighbour outwards, or whose end of the panel, saw C(1/2 + last).
+INLINE void curve_see(const curve_peaks *const peaks, curve_view *const view, floatv *const last,
+                      const curve_near *const near, const floatv weight, const bool is_outermost) {
+    const curve_path *const path = &peaks->path;
+    const floatv leap = fabs(near->seen - *last);
+    view->leap = max(view->leap, leap);
+    view->plain = fma(weight, near->plain, view->plain);
+    if (is_outermost) {
+        view->first_leap = max(view->first_leap, leap);
+        if (path->spline_count)
+            view->step = max(view->step, fabs(curve_intensity(path, near->seen) - curve_intensity(path, *last)));
+    }
+    *last = near->seen;
+}
+
+// Returns the light that may lie between a panel's nodes, from the sum of theirs: where the nearest point jumps beside
+// the outermost node, unseen by all others, the field has a kink, which counts when tolerances are tight, and with a
+// local intensity a jump. Or where it passes over so much of a local intensity that the nodes cannot tell what.
+INLINE floatv curve_unseen(const curve_peaks *const peaks, const curve_view *const view, const floatv sum) {
+    const float pieces = (float)peaks->path.spline_count;
+    const floatv of_plain = select(BEYOND_NODES * view->step, splat(PASSED_BETWEEN), pieces * view->leap > 0.75f);
+    floatv unseen = pieces > 0.0f ? of_plain * view->plain : splat(0.0f);
+#ifndef COARSE
+    unseen += select(splat(0.0f), BEYOND_KINKS * fabs(sum), view->first_leap > 0.1f);
+#endif
+    return unseen;
 }
 
 // Returns where to cut a panel that is not resolved: where the nearest point jumps, or else in the middle. Halving
@@ -247,15 +288,22 @@ INLINE floatv curve_split(const curve_peaks *const peaks, const floatv from, con
     curve_sight left = curve_seen_from(path, from + inside), right = curve_seen_from(path, to - inside);
     const floatv change = fabs(right.x - left.x);
     floatv s = 0.5f * (left.s + right.s);
-    for (int step = 0; step < 10; ++step) {
+    for (int step = 0; step < 7; ++step) {
         const curve_sight sight = curve_seen_from(path, s);
         const intv is_left = fabs(sight.x - left.x) < fabs(sight.x - right.x);
         left = select_sight(left, sight, is_left);
         right = select_sight(sight, right, is_left);
         s = 0.5f * (left.s + right.s);
-        if (step > 6)
-            s = clamp(equidistant(peaks, left.x, right.x), left.s, right.s);
     }
+    // Points seen from closer by are nearer to those that the jump joins, and the square of what is missing counts.
+    for (int step = 0; step < 2; ++step) {
+        s = clamp(equidistant(peaks, left.x, right.x), left.s, right.s);
+        const curve_sight before = curve_seen_from(path, max(s - inside, left.s));
+        const curve_sight behind = curve_seen_from(path, min(s + inside, right.s));
+        left = select_sight(left, before, fabs(before.x - left.x) < fabs(before.x - right.x));
+        right = select_sight(right, behind, fabs(behind.x - right.x) < fabs(behind.x - left.x));
+    }
+    s = clamp(equidistant(peaks, left.x, right.x), left.s, right.s);
     const intv jumps = fabs(right.x - left.x) > max(0.25f * change, 1e-3f);
     const intv is_inside = (s > from + inside) & (s < to - inside);
     return select(middle, s, jumps & is_inside);

@@ -123,6 +123,7 @@ typedef struct {
     floatv core;
     bool is_polished; // whether roots of the cubic are improved
     RootCounts counts;
+    floatv seen, plain; // of the last point that was asked for: x of the nearest point, the field without intensity
 } curve_near;
 
 // Returns whether the roots of the cubic have too few digits for such a squared distance. They lose the more, the
@@ -156,11 +157,11 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
                                  floatv *const base) {
     const curve_path *const path = &peaks->path;
     const floatv per_span2 = inverse(peaks->span2);
-    const Peak first = {peaks->first, peaks->first_distance2 * per_span2};
-    const Peak second = {peaks->second, peaks->second_distance2 * per_span2};
-    const floatv to_first = first.re - clamp(first.re, from, to), to_second = second.re - clamp(second.re, from, to);
-    const intv is_second = fma(to_second, to_second, second.im) < fma(to_first, to_first, first.im);
-    *base = clamp(select(first.re, second.re, is_second), from, to);
+    const floatv first_im2 = peaks->first_distance2 * per_span2, second_im2 = peaks->second_distance2 * per_span2;
+    const floatv first_inside = clamp(peaks->first, from, to), second_inside = clamp(peaks->second, from, to);
+    const floatv to_first = peaks->first - first_inside, to_second = peaks->second - second_inside;
+    const intv is_second = fma(to_second, to_second, second_im2) < fma(to_first, to_first, first_im2);
+    *base = select(first_inside, second_inside, is_second);
 
     const curve_point point = curve_point_at(path, *base);
     floatv distance2;
@@ -184,12 +185,16 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     const floatv slope = dot3(offset, span);
     const floatv per_curvature = inverse(curvature);
     const floatv softened = distance2 + path->softening2;
-    const floatv lowest = max(fma(-slope * per_curvature, slope, softened), 1e-3f * softened);
+    const floatv lowest = max(fma(-slope * per_curvature, slope, softened), 0.0f);
     peak->re = -slope * per_curvature;
-    peak->im = 0.5f * twice_sqrt(fma(lowest, per_curvature, 0.5f * path->floor2 * per_span2));
+    const floatv blurred = fma(max(lowest, 1e-3f * softened), per_curvature, 0.5f * path->floor2 * per_span2);
+    peak->im = 0.5f * twice_sqrt(blurred);
 
-    const intv is_thin = (lowest < path->floor2) & (path->floor2 < 1e-6f * size2);
-    curve_near near = {*path, x, needs_polish(path, lowest), {true, true}};
+    // Where the ray runs along the curve, the floor cuts off more than a point of it.
+    const intv is_floored = lowest < path->floor2;
+    const intv is_thin = is_floored & (path->floor2 < 1e-6f * size2) & (curvature > 0.02f * peaks->span2);
+    peak->is_flat = is_floored & !is_thin;
+    curve_near near = {*path, x, needs_polish(path, lowest), {true, true}, x, splat(0.0f)};
     near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2, path->is_square) - lowest, is_thin);
     near.path.floor2 = select(path->floor2, 0.5f * path->floor2, is_thin);
     near.path.along.at = offset.x;
@@ -227,7 +232,7 @@ INLINE floatv polished(const curve_path *const path, const curve_point *const po
 }
 
 // Returns the field at s = base + x.
-INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
+INLINE floatv curve_near_field(curve_near *const near, const floatv x) {
     curve_point point = curve_point_at(&near->path, x);
     point.core = near->core;
     floatv distance2;
@@ -237,6 +242,7 @@ INLINE floatv curve_near_field(const curve_near *const near, const floatv x) {
         distance2 = min(distance2, curve_distance2(&near->path, &point, nearest));
     }
     const floatv per_distance = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
-    const floatv field = profiled(per_distance, near->path.is_square);
-    return near->path.spline_count ? field * curve_intensity(&near->path, nearest) : field;
+    near->seen = nearest;
+    near->plain = profiled(per_distance, near->path.is_square);
+    return near->path.spline_count ? near->plain * curve_intensity(&near->path, nearest) : near->plain;
 }
