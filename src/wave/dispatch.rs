@@ -14,7 +14,7 @@ use super::tiles::{self, OpenTiles};
 use super::{Wave, counts};
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
-use crate::opencl::{Argument, Compute, DeviceType, Film, Handle, run_time, state, wait};
+use crate::opencl::{Argument, Compute, DeviceForm, Film, Handle, run_time, state, wait};
 
 /// Launches that are enqueued at once: while the host sees to the next one, the device works on another.
 const MOST_UNDER_WAY: usize = 2;
@@ -178,10 +178,11 @@ impl Wave {
         // On PoCL groups of 4 to 64 are equally fast, 128 leave a core idle on small images; one work-item for several
         // spans of lanes gains nothing.
         let device = compute.device();
-        let group = match device.device_type {
-            DeviceType::Gpu => 64,
-            _ => 16,
+        let group = match device.form {
+            DeviceForm::Gpu => 64,
+            DeviceForm::Cpu => 16,
         };
+        let group = kernel.group(compute, group)?;
         let items = part.pixels.len().div_ceil(self.lanes as usize);
         let OpenTiles { places, light } = &self.open_tiles;
         let events = match plan.task.rays {

@@ -26,6 +26,7 @@ pub use pace::Split;
 pub use partition::TILE_SHARES;
 pub(crate) use plan::{Plan, grain_rows};
 pub use rule::Rule;
+pub(crate) use tiles::workers as tile_workers;
 
 use crate::cost::FrameCost;
 use crate::error::Result;
@@ -80,7 +81,7 @@ impl Wave {
             open_tiles: OpenTiles::default(),
             counts: Counts::default(),
             depths: UploadedShared::new("the depth image"),
-            pace: Pace::new(compute.device().device_type),
+            pace: Pace::new(compute.device().form),
             cost: FrameCost::default(),
             under_way: VecDeque::new(),
             unwatched: Vec::new(),

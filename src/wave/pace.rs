@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::Duration;
 
 use super::partition::{Counts, Part, Place, TILE_SHARES, Work};
-use crate::opencl::DeviceType;
+use crate::opencl::DeviceForm;
 use crate::scene::kinds::KIND_COUNT;
 
 /// What a launch aims at: on a GPU, since desktop systems reset one after a launch of seconds and draw nothing
@@ -44,11 +44,11 @@ pub struct Split {
 }
 
 impl Pace {
-    pub(super) fn new(device: DeviceType) -> Self {
+    pub(super) fn new(form: DeviceForm) -> Self {
         Self {
-            target: match device {
-                DeviceType::Gpu => TARGET_ON_GPU,
-                _ => TARGET_ELSEWHERE,
+            target: match form {
+                DeviceForm::Gpu => TARGET_ON_GPU,
+                DeviceForm::Cpu => TARGET_ELSEWHERE,
             },
             samples: FIRST_SAMPLES,
             kinds: [false; KIND_COUNT],
@@ -165,7 +165,7 @@ mod tests {
 
     /// Every launch of a frame, at a device that does `rate` samples a second.
     fn frame(pixels: u32, work: &Work, rate: f64) -> Vec<Part> {
-        let mut pace = Pace::new(DeviceType::Gpu);
+        let mut pace = Pace::new(DeviceForm::Gpu);
         let mut parts = Vec::new();
         let mut pixel = 0;
         while pixel < pixels {

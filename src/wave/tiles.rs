@@ -6,7 +6,7 @@ use super::pack::layout::TilePass;
 use super::partition::{Counts, Part, TILE_SHARES, word_count};
 use crate::error::Result;
 use crate::image::ImageSize;
-use crate::opencl::{Compute, DeviceBuffer, DeviceType, OpenClDevice, RendererOptions};
+use crate::opencl::{Compute, DeviceBuffer, DeviceForm, OpenClDevice, RendererOptions, halved};
 use crate::scene::kinds::KIND_COUNT;
 
 /// Sides of the smallest and of the largest tile, pixels; each pass halves them.
@@ -155,14 +155,15 @@ pub(super) fn passes(
         .collect()
 }
 
-/// Returns the work-items of a group, which share the 16 nodes of a tile.
-pub(super) fn workers(device: &OpenClDevice, options: &RendererOptions) -> u32 {
+/// Returns the work-items of a group, which share the 16 nodes of a tile: no more than the device lets a group have.
+pub(crate) fn workers(device: &OpenClDevice, options: &RendererOptions) -> u32 {
     let most = 16 / options.lanes.unwrap_or(device.lanes);
-    let suitable = match device.device_type {
-        DeviceType::Gpu => most,
-        _ => 1,
+    let suitable = match device.form {
+        DeviceForm::Gpu => most,
+        DeviceForm::Cpu => 1,
     };
-    options.tile_workers.unwrap_or(suitable).min(most)
+    let wanted = options.tile_workers.unwrap_or(suitable).min(most);
+    halved(wanted as usize, device.most_workers as usize) as u32
 }
 
 /// Returns the groups of work-items for a pass on a device with this many compute units.
