@@ -1,5 +1,6 @@
 // Writes one RGBA pixel for every lane, alpha 1, to where a launch's light goes. Every engine ends here: its kernel
-// takes a FilmPart and FILM_PARAMETER, and gives its light to store_pixels.
+// takes a FilmPart and FILM_PARAMETER, begins with gathered_light, and gives the sum to store_pixels. As light is
+// summed on, and never added up from sums, a pixel has the same bits however many launches it takes.
 #pragma once
 #include "check_size.h"
 #include "lanes.h"
@@ -12,7 +13,7 @@ typedef struct {
     uint count;   // pixels
     uint slot;    // where in the buffer the first pixel goes, in pixels
     uint width;   // pixels in a row of the image
-    uint adds;    // 0: overwrite the buffer; 1: add to it
+    uint adds;    // 1: light begins with what the buffer has; 0: with none
     uint is_last; // 1: no launch adds to these pixels any more
 } FilmPart;
 CHECK_SIZE(FilmPart, SIZEOF_FILMPART);
@@ -45,9 +46,9 @@ typedef __global float *Channels;
 #define STORES_WHOLE
 bool stores_whole(const FilmPart *const part) {
 #ifdef HALVES
-    return part->is_last && !part->adds;
+    return part->is_last;
 #else
-    return !part->adds;
+    return true;
 #endif
 }
 
@@ -112,9 +113,7 @@ INLINE void store_all_pixels(const Channels first_half, const Channels second_ha
 }
 
 INLINE void store_pixel(const FilmPart *const part, const uint index, const float4 light, FILM_PARAMETER) {
-    __global float4 *const gathered = pixels + part->slot + index;
-    const float4 before = part->adds ? *gathered : (float4)(0.0f);
-    const float4 pixel = (float4)((light + before).xyz, 1.0f);
+    const float4 pixel = (float4)(light.xyz, 1.0f);
 #ifdef IMAGE
     if (part->is_last) {
         const int place = (int)(part->first + index), width = (int)part->width;
@@ -127,7 +126,7 @@ INLINE void store_pixel(const FilmPart *const part, const uint index, const floa
         return;
     }
 #endif
-    *gathered = pixel;
+    pixels[part->slot + index] = pixel;
 }
 
 // How lanes are stored one by one: as pixels of a block of `block_width` columns, `pitch` pixels from one row to the
@@ -137,6 +136,18 @@ typedef struct {
     uint block_width, pitch;
     uint columns, rows; // that the image has
 } Clip;
+
+// Returns what earlier launches have gathered for the lanes' pixels; those that the image has not repeat others.
+INLINE float3v gathered_clipped(const FilmPart *const part, const uint corner, const Clip *const clip,
+                                __global const float4 *const pixels) {
+    __global const float *const channels = (__global const float *)(pixels + part->slot + corner);
+    const uintv place = clip->first_lane + LANE_NUMBERS;
+    const uintv column = min(place % clip->block_width, (uintv)(clip->columns - 1u));
+    const uintv row = min(place / clip->block_width, (uintv)(clip->rows - 1u));
+    const intv at = as_intv(4u * (row * clip->pitch + column));
+    const float3v light = {gather(channels, at), gather(channels, at + 1), gather(channels, at + 2)};
+    return light;
+}
 
 INLINE void store_clipped(const FilmPart *const part, const uint corner, const Clip *const clip, const float3v color,
                           FILM_PARAMETER) {
@@ -154,8 +165,15 @@ INLINE void store_clipped(const FilmPart *const part, const uint corner, const C
     }
 }
 
-// Writes (or adds) the light of LANES consecutive pixels, `begin` pixels after the part's first; nothing of those
-// beyond its end.
+// Returns what the light of LANES consecutive pixels begins with, `begin` pixels after the part's first.
+INLINE float3v gathered_light(const FilmPart *const part, const uint begin, __global const float4 *const pixels) {
+    if (!part->adds)
+        return uniform3((float4)(0.0f));
+    const Clip clip = {0, LANES, 0, part->count - begin, 1};
+    return gathered_clipped(part, begin, &clip, pixels);
+}
+
+// Writes the light of LANES consecutive pixels, `begin` pixels after the part's first; nothing of those beyond its end.
 INLINE void store_pixels(const FilmPart *const part, const uint begin, const float3v light, FILM_PARAMETER) {
     const uint count = LAST_LANES(part->count - begin);
 #ifdef STORES_WHOLE

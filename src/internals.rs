@@ -14,7 +14,7 @@ pub use crate::reference::{
     CurveField, Field, Integrand, Sample, Source, b_spline, exact, integrate, simpson, sources,
 };
 pub use crate::scene::ViewPlane;
-pub use crate::wave::{Rule, Wave, pack};
+pub use crate::wave::{Rule, Split, TILE_SHARES, Wave, pack};
 
 use crate::error::{Error, Result};
 use crate::opencl::{RendererOptions, run_time};
@@ -58,6 +58,14 @@ pub unsafe fn with_compiler_options(options: &RendererOptions, more: &str) -> Re
 pub fn set_rule(renderer: &mut Renderer, rule: Rule) {
     if let Some(wave) = renderer.wave() {
         wave.set_rule(Some(rule));
+    }
+}
+
+/// Cuts a renderer's frames into launches in this way, whatever the pace; `None`: by time. Does nothing on several
+/// devices and on the reference.
+pub fn force_split(renderer: &mut Renderer, split: Option<Split>) {
+    if let Some(wave) = renderer.wave() {
+        wave.force_split(split);
     }
 }
 

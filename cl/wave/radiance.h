@@ -29,10 +29,11 @@ KINDS(EMISSION_OF)
         radiance = fma3(uniform3(kind##_emission(sources, i)), integral, radiance);                                    \
     }
 
-// Returns the linear RGB of the sources that a launch names, a ray in every lane.
+// Returns the linear RGB before, and of the sources that a launch names, a ray in every lane. Each light is added to
+// all before it, so that the bits of the sum do not depend on where launches part it.
 INLINE float3v radiance_along(const Ray *const ray, const Sources *const sources, const Quadrature *const quadrature,
-                              const Launch *const launch) {
-    float3v radiance = uniform3((float4)(0.0f));
+                              const Launch *const launch, const float3v before) {
+    float3v radiance = before;
     KINDS(ADD_LIGHT)
     return radiance;
 }

@@ -38,6 +38,7 @@ typedef struct {
     uint read_from;           // where the list of open tiles has those of the pass before
     uint write_to;            // where it gets this one's
     uint word_count;          // words of 32 sources
+    uint from, to;            // which of the pass' tiles a launch takes, in shares of 1 / TILE_SHARES
     float pixel_step;         // from a pixel to its neighbour, world units on the projection plane
     float most_odd;   // how large an odd and an even highest coefficient of an interpolation may be, of the least
     float most_even;  // value; else it is not put to the test

@@ -121,6 +121,12 @@ pub struct DeviceArgument {
     /// Use the device even if its kernels fail the self-test
     #[arg(long)]
     pub no_self_test: bool,
+    /// Rays that a work-item carries side by side: 1, 4, 8 or 16 [default: what suits the device]
+    #[arg(long, value_name = "N", hide_short_help = true)]
+    pub lanes: Option<u32>,
+    /// Work-items that share a tile, at most 16 divided by the lanes: 1, 2, 4, 8 or 16 [default: what suits the device]
+    #[arg(long, value_name = "N", hide_short_help = true)]
+    pub tile_workers: Option<u32>,
 }
 
 impl DeviceArgument {
@@ -128,6 +134,7 @@ impl DeviceArgument {
     pub fn options(&self) -> RendererOptions {
         let mut options = RendererOptions::default();
         options.skips_self_test = self.no_self_test;
+        (options.lanes, options.tile_workers) = (self.lanes, self.tile_workers);
         options
     }
 }

@@ -23,17 +23,19 @@ pub fn run(arguments: &DevicesArguments) -> Outcome {
 /// Returns a text with one row for each device.
 fn table(devices: &[Device]) -> String {
     let mut text = format!(
-        "{:>5} {:<11} {:>5} {:>10} {:>5}  name, platform, version, driver\n",
-        "index", "type", "units", "memory", "lanes"
+        "{:>5} {:<11} {:>5} {:>10} {:<4} {:>5} {:>7}  name, platform, version, driver\n",
+        "index", "type", "units", "memory", "form", "lanes", "workers"
     );
     for device in devices {
         text += &format!(
-            "{:>5} {:<11} {:>5} {:>6} MiB {:>5}  {}, {}, {}, {}\n",
+            "{:>5} {:<11} {:>5} {:>6} MiB {:<4} {:>5} {:>7}  {}, {}, {}, {}\n",
             device.index,
             device.device_type,
             device.compute_units,
             device.memory_bytes >> 20,
+            device.form,
             device.lanes,
+            device.tile_workers,
             device.name,
             device.platform,
             device.version,

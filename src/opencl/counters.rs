@@ -28,16 +28,6 @@ pub struct Counted<const LEN: usize> {
     is_over: bool,
 }
 
-/// A set for a launch.
-#[derive(Debug)]
-pub(crate) struct CountSet {
-    /// Place of its first number in the list.
-    pub first: u32,
-    /// The copy that set all sets to 0, if it was made now. Kernels that count on from old numbers draw a wrong image:
-    /// whether it went well must be asked for.
-    pub reset: Option<Handle<Event>>,
-}
-
 impl<const LEN: usize> Counters<LEN>
 where
     [u32; LEN]: Pod,
@@ -52,8 +42,9 @@ where
         self.taken == SETS
     }
 
-    /// Takes a set of zeros for the next launch; there must be one left.
-    pub(crate) fn take(&mut self, compute: &Compute) -> Result<CountSet> {
+    /// Takes a set of zeros for the next launch; there must be one left. Returns the copy that set all sets to 0, if it
+    /// was made now. Kernels that count on from old numbers draw a wrong image: whether it went well must be asked for.
+    pub(crate) fn take(&mut self, compute: &Compute) -> Result<Option<Handle<Event>>> {
         let buffer = match self.buffer.take() {
             Some(buffer) => buffer,
             None => DeviceBuffer::new(compute, "the counts", SETS)?,
@@ -65,9 +56,13 @@ where
             0 => Some(unsafe { buffer.begin_write(compute, zeros) }?),
             _ => None,
         };
-        let first = (LEN * self.taken) as u32;
         self.taken += 1;
-        Ok(CountSet { first, reset })
+        Ok(reset)
+    }
+
+    /// Returns the place of the last set's first number in the list.
+    pub(crate) fn first(&self) -> u32 {
+        (LEN * self.taken.saturating_sub(1)) as u32
     }
 
     /// Reads the numbers of all launches after all earlier commands of the queue; `None` if none counts.

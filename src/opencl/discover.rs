@@ -38,6 +38,43 @@ impl std::fmt::Display for DeviceType {
     }
 }
 
+/// How kernels are built for a device and launched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum DeviceForm {
+    /// A ray for each work-item, groups whose work-items share a tile, launches of 40 ms.
+    Gpu,
+    /// Several rays side by side in the vectors of a work-item, a tile for each.
+    Cpu,
+}
+
+impl std::fmt::Display for DeviceForm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Gpu => "gpu",
+            Self::Cpu => "cpu",
+        })
+    }
+}
+
+/// Environment variable with the form of all devices, `gpu` or `cpu`, instead of what suits each.
+const FORM_VARIABLE: &str = "ENERGYWAVE_FORM";
+
+/// Returns the form that the environment asks for.
+fn forced_form() -> Result<Option<DeviceForm>, String> {
+    let word = std::env::var_os(FORM_VARIABLE).unwrap_or_default();
+    match word.to_str() {
+        Some("") => Ok(None),
+        Some("gpu") => Ok(Some(DeviceForm::Gpu)),
+        Some("cpu") => Ok(Some(DeviceForm::Cpu)),
+        _ => Err(format!(
+            "{FORM_VARIABLE}={}: it must be gpu or cpu",
+            word.display()
+        )),
+    }
+}
+
 /// Result of a search for OpenCL devices.
 #[derive(Debug, Default)]
 pub struct Discovery {
@@ -69,8 +106,12 @@ pub struct OpenClDevice {
     pub memory_bytes: u64,
     /// Largest single buffer, bytes.
     pub max_allocation_bytes: u64,
-    /// Lanes of the kernels by default: 1 on GPUs, the float vector width on CPUs.
+    /// How kernels are built for it and launched.
+    pub form: DeviceForm,
+    /// Lanes of the kernels by default: 1 in the form of a GPU, the float vector width in that of a CPU.
     pub lanes: u32,
+    /// Work-items of a group at most.
+    pub most_workers: u32,
     /// Whether it works in the host's own memory.
     pub shares_host_memory: bool,
     /// Whether it is a simulator, which is never chosen by default.
@@ -82,6 +123,15 @@ pub fn discover() -> Discovery {
     // Drivers load at the first question. PoCL 3.1, asked by a second thread meanwhile, answers that it has no device.
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let form = match forced_form() {
+        Ok(form) => form,
+        Err(problem) => {
+            return Discovery {
+                devices: Vec::new(),
+                problem: Some(problem),
+            };
+        }
+    };
     let platforms = match get_platforms() {
         Ok(platforms) => platforms,
         Err(ClError(code)) => {
@@ -95,7 +145,8 @@ pub fn discover() -> Discovery {
         .iter()
         .flat_map(|platform| {
             let ids = platform.get_devices(CL_DEVICE_TYPE_ALL).unwrap_or_default();
-            ids.into_iter().filter_map(|id| inspect(platform, id))
+            ids.into_iter()
+                .filter_map(move |id| inspect(platform, id, form))
         })
         .collect();
     devices.sort_by(|a, b| {
@@ -117,11 +168,15 @@ pub fn discover() -> Discovery {
 /// Reads the properties of a device that someone else found; `None` if it cannot render.
 pub(super) fn device_of(id: cl_device_id) -> Option<OpenClDevice> {
     let platform = Platform::new(ClDevice::new(id).platform().ok()?);
-    inspect(&platform, id)
+    inspect(&platform, id, forced_form().ok()?)
 }
 
 /// Reads the properties of a device; `None` if it has no compiler or keeps a property to itself: it cannot render.
-fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
+fn inspect(
+    platform: &Platform,
+    id: cl_device_id,
+    form: Option<DeviceForm>,
+) -> Option<OpenClDevice> {
     let handle = ClDevice::new(id);
     if !handle.available().ok()? || !handle.compiler_available().ok()? {
         return None;
@@ -135,10 +190,21 @@ fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
         _ => DeviceType::Accelerator,
     };
     let is_simulator = platform.to_ascii_lowercase().contains("oclgrind");
-    let lanes = match device_type {
-        DeviceType::Cpu if !is_simulator => handle.native_vector_width_float().ok()?,
+    let width = match device_type {
+        DeviceType::Cpu if !is_simulator => {
+            supported_lanes(handle.native_vector_width_float().ok()?)
+        }
         _ => 1,
     };
+    // A processor without vectors in a work-item has them across work-items, as a GPU (Mesa's llvmpipe); but PoCL 3.1
+    // compiles barriers for hours, and a simulator takes them one by one.
+    let is_like_gpu = width == 1 && !is_simulator && !platform.contains("Portable Computing");
+    let suitable = match device_type {
+        DeviceType::Gpu => DeviceForm::Gpu,
+        _ if is_like_gpu => DeviceForm::Gpu,
+        _ => DeviceForm::Cpu,
+    };
+    let form = form.unwrap_or(suitable);
     Some(OpenClDevice {
         name: handle.name().ok()?.trim().to_owned(),
         device_type,
@@ -147,7 +213,12 @@ fn inspect(platform: &Platform, id: cl_device_id) -> Option<OpenClDevice> {
         compute_units: handle.max_compute_units().ok()?,
         memory_bytes: handle.global_mem_size().ok()?,
         max_allocation_bytes: handle.max_mem_alloc_size().ok()?,
-        lanes: supported_lanes(lanes),
+        lanes: match form {
+            DeviceForm::Gpu => 1,
+            DeviceForm::Cpu => width,
+        },
+        most_workers: u32::try_from(handle.max_work_group_size().ok()?).unwrap_or(u32::MAX),
+        form,
         shares_host_memory: handle.host_unified_memory().unwrap_or(false),
         is_simulator,
         platform,

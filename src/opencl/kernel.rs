@@ -91,6 +91,19 @@ impl Kernel {
         }
     }
 
+    /// Returns how many work-items a group has that should have `wanted`, a power of two: half as many until the device
+    /// can run it.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`] if the driver does not say.
+    pub(crate) fn group(&self, compute: &Compute, wanted: usize) -> Result<usize> {
+        let most = self
+            .kernel
+            .get_work_group_size(compute.device.handle.id())
+            .map_err(failed(&compute.device.name, "clGetKernelWorkGroupInfo"))?;
+        Ok(halved(wanted, most))
+    }
+
     /// Sets every argument by its parameter's name and enqueues `items` work-items in groups of `group`; the last group
     /// may be padded with work-items beyond `items`.
     ///
@@ -140,6 +153,15 @@ impl Kernel {
     }
 }
 
+/// Halves a number until it is no more than `most`, or 1.
+pub(crate) fn halved(wanted: usize, most: usize) -> usize {
+    let mut number = wanted;
+    while number > most.max(1) {
+        number /= 2;
+    }
+    number
+}
+
 /// Waits for a launch, and returns how long the device worked on it.
 pub(crate) fn run_time(compute: &Compute, event: &Event) -> Result<Duration> {
     let name = &compute.device.name;
@@ -150,4 +172,18 @@ pub(crate) fn run_time(compute: &Compute, event: &Event) -> Result<Duration> {
         .and_then(|begun| Ok(ended?.saturating_sub(begun)))
         .map_err(failed(name, "clGetEventProfilingInfo"))?;
     Ok(Duration::from_nanos(nanoseconds))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_group_is_halved_until_the_device_can_run_it() {
+        let cases = [(64, 1024), (64, 64), (64, 63), (64, 24), (16, 1), (16, 0)];
+        assert_eq!(
+            cases.map(|(wanted, most)| halved(wanted, most)),
+            [64, 64, 32, 16, 1, 1]
+        );
+    }
 }

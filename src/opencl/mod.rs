@@ -36,14 +36,14 @@ pub use compute::Compute;
 pub(crate) use copies::state;
 pub(crate) use counters::wait;
 pub use counters::{Counted, Counters};
-pub use discover::{DeviceType, Discovery, OpenClDevice, discover};
+pub use discover::{DeviceForm, DeviceType, Discovery, OpenClDevice, discover};
 pub use film::{Film, FilmFormat, FilmPart};
 pub(crate) use film_memory::MappedFilm;
 pub(crate) use handle::Handle;
 pub use host::HostTarget;
 pub(crate) use host::{HostLink, unfit};
 pub use kernel::{Argument, Kernel};
-pub(crate) use kernel::{by_value, run_time, set_value};
+pub(crate) use kernel::{by_value, halved, run_time, set_value};
 #[cfg(feature = "kernel-cache")]
 pub use key::ProgramKey;
 pub(crate) use layout::device_struct;

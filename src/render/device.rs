@@ -6,8 +6,9 @@ use serde::{Serialize, Serializer};
 
 use crate::error::{Error, Result};
 use crate::memory;
-use crate::opencl::{DeviceType, Discovery, OpenClDevice, discover};
+use crate::opencl::{DeviceForm, DeviceType, Discovery, OpenClDevice, RendererOptions, discover};
 use crate::threads;
+use crate::wave::tile_workers;
 
 /// A device that can render. Serialises to the record that `energywave devices --json` prints.
 #[derive(Debug, Clone, Serialize)]
@@ -32,8 +33,12 @@ pub struct Device {
     pub memory_bytes: u64,
     /// Largest single allocation in bytes.
     pub max_allocation_bytes: u64,
+    /// How kernels are built for it and launched; the environment variable `ENERGYWAVE_FORM` forces it for all devices.
+    pub form: DeviceForm,
     /// Rays that a work-item carries side by side.
     pub lanes: u32,
+    /// Work-items that share a tile.
+    pub tile_workers: u32,
     /// Whether it is chosen where nothing else is said.
     pub default: bool,
     #[serde(skip)]
@@ -286,7 +291,9 @@ fn from_opencl(index: usize, device: OpenClDevice) -> Device {
         compute_units: device.compute_units,
         memory_bytes: device.memory_bytes,
         max_allocation_bytes: device.max_allocation_bytes,
+        form: device.form,
         lanes: device.lanes,
+        tile_workers: tile_workers(&device, &RendererOptions::default()),
         default: false,
         backend: Backend::OpenCl(device),
     }
@@ -304,7 +311,9 @@ fn reference(index: usize) -> Device {
         compute_units: threads::count() as u32,
         memory_bytes: memory,
         max_allocation_bytes: memory,
+        form: DeviceForm::Cpu,
         lanes: 1,
+        tile_workers: 1,
         default: false,
         backend: Backend::Reference,
     }

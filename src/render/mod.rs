@@ -184,8 +184,7 @@ impl Renderer {
     /// before. What lies between the rows, and after the last, is left alone.
     ///
     /// An image that is rendered in parts is, within the scene's tolerance, the one that is rendered whole; bit for bit
-    /// where the parts begin at multiples of 256 rows, unless the device is so slow that it takes several launches for
-    /// the sources: their light is then summed in another order.
+    /// where the parts begin at multiples of 256 rows, however slow or busy the device is.
     ///
     /// # Errors
     /// As [`Renderer::render`], and [`Error::Unsupported`] if the image does not have those rows, a row of `4 * width`

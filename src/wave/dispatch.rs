@@ -8,13 +8,13 @@ use opencl3::event::Event;
 use super::counts::CountedNumbers;
 use super::kernels::{Rays, Variant};
 use super::pack::layout::Launch;
-use super::partition::Part;
+use super::partition::{Part, Place, TILE_SHARES};
 use super::plan::Plan;
 use super::tiles::{self, OpenTiles};
 use super::{Wave, counts};
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
-use crate::opencl::{Argument, Compute, DeviceType, Film, Handle, run_time, state, wait};
+use crate::opencl::{Argument, Compute, DeviceForm, Film, Handle, run_time, state, wait};
 
 /// Launches that are enqueued at once: while the host sees to the next one, the device works on another.
 const MOST_UNDER_WAY: usize = 2;
@@ -47,6 +47,8 @@ impl Wave {
         let largest = Part {
             pixels: 0..plan.work.most_pixels().min(pixels as u32),
             sources: 0..plan.work.source_count.min(plan.work.most_sources),
+            passes: 0..u32::MAX,
+            shares: 0..TILE_SHARES,
         };
         self.open_tiles.reserve(compute, &plan.passes(&largest))
     }
@@ -68,24 +70,21 @@ impl Wave {
         let mut pixel = band.start;
         while pixel < band.end {
             let pixels = pixel..pixel + self.pace.pixels(&plan.work, band.end - pixel);
-            let mut source = 0;
-            loop {
+            let mut next = Some(Place::default());
+            while let Some(place) = next {
                 self.settle_down_to(MOST_UNDER_WAY - 1, compute, plan)?;
-                let part = self.pace.part(&plan.work, &pixels, source);
-                let launched = self.launch(compute, plan, &part, film)?;
-                self.under_way.push_back(launched);
-                if self.counts.is_used_up() {
+                let part = self.pace.part(&plan.work, &pixels, place);
+                if part.is_first() && self.counts.is_used_up() {
                     self.fetch_counts(compute)?;
                 }
-                source = part.sources.end;
-                if source >= plan.work.source_count {
-                    break;
+                let launched = self.launch(compute, plan, &part, film)?;
+                self.under_way.push_back(launched);
+                next = part.next(&plan.work);
+                pixel = if next.is_some() { pixel } else { pixels.end };
+                if progress(pixel).is_break() {
+                    self.settle(compute, plan)?;
+                    return Err(Error::Interrupted);
                 }
-            }
-            pixel = pixels.end;
-            if progress(pixel).is_break() {
-                self.settle(compute, plan)?;
-                return Err(Error::Interrupted);
             }
         }
         self.fetch_counts(compute)
@@ -107,23 +106,20 @@ impl Wave {
         self.pace.begin_unwatched(&plan.work, pixels);
         let mut pixel = 0;
         while pixel < pixels {
-            let next = pixel..pixel + self.pace.pixels(&plan.work, pixels - pixel);
-            let mut source = 0;
-            loop {
-                let part = self.pace.part(&plan.work, &next, source);
-                let mut launched = self.launch(compute, plan, &part, film)?;
-                self.held.extend(launched.reset.take());
-                if self.counts.is_used_up() {
+            let some = pixel..pixel + self.pace.pixels(&plan.work, pixels - pixel);
+            let mut next = Some(Place::default());
+            while let Some(place) = next {
+                let part = self.pace.part(&plan.work, &some, place);
+                if part.is_first() && self.counts.is_used_up() {
                     self.counts.begin();
                 }
+                let mut launched = self.launch(compute, plan, &part, film)?;
+                self.held.extend(launched.reset.take());
                 self.cost.launches += launched.events.len() as u32;
                 self.unwatched.push(launched);
-                source = part.sources.end;
-                if source >= plan.work.source_count {
-                    break;
-                }
+                next = part.next(&plan.work);
             }
-            pixel = next.end;
+            pixel = some.end;
         }
         Ok(())
     }
@@ -153,14 +149,15 @@ impl Wave {
     ) -> Result<Launched> {
         let passes = plan.passes(part);
         self.open_tiles.reserve(compute, &passes)?;
-        let set = match self.counts_in(plan) {
-            true => Some(self.counts.take(compute)?),
+        // The launches of a tile's passes count in one set: each begins with what the one before left open.
+        let reset = match self.counts_in(plan) && part.is_first() {
+            true => self.counts.take(compute)?,
             false => None,
         };
         let (is_first, is_last) = plan.place_of(part);
         let film = film.arguments(compute, &part.pixels, plan.size, is_first, is_last)?;
         let launch = Launch {
-            first_count: set.as_ref().map_or(0, |set| set.first),
+            first_count: self.counts.first(),
             ..plan.launch(part)
         };
         let mut common: Vec<(&str, &dyn Argument)> =
@@ -181,10 +178,11 @@ impl Wave {
         // On PoCL groups of 4 to 64 are equally fast, 128 leave a core idle on small images; one work-item for several
         // spans of lanes gains nothing.
         let device = compute.device();
-        let group = match device.device_type {
-            DeviceType::Gpu => 64,
-            _ => 16,
+        let group = match device.form {
+            DeviceForm::Gpu => 64,
+            DeviceForm::Cpu => 16,
         };
+        let group = kernel.group(compute, group)?;
         let items = part.pixels.len().div_ceil(self.lanes as usize);
         let OpenTiles { places, light } = &self.open_tiles;
         let events = match plan.task.rays {
@@ -206,7 +204,7 @@ impl Wave {
         };
         Ok(Launched {
             events,
-            reset: set.and_then(|set| set.reset),
+            reset,
             counted: None,
             integrals: part.pixels.len() as u64 * (part.sources.end - part.sources.start),
             samples: part.samples(&plan.work),

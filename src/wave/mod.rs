@@ -6,6 +6,7 @@ mod dispatch;
 mod kernels;
 mod kinds;
 mod lists;
+mod pace;
 pub mod pack;
 mod partition;
 mod plan;
@@ -21,8 +22,11 @@ use opencl3::event::Event;
 
 pub(crate) use kernels::common_definitions;
 pub(crate) use kinds::{Present, resolve, resolve_text};
+pub use pace::Split;
+pub use partition::TILE_SHARES;
 pub(crate) use plan::{Plan, grain_rows};
 pub use rule::Rule;
+pub(crate) use tiles::workers as tile_workers;
 
 use crate::cost::FrameCost;
 use crate::error::Result;
@@ -33,9 +37,9 @@ use counts::Counts;
 use dispatch::Launched;
 use kernels::{Kernels, Rays, Task, Variant};
 use lists::Lists;
+use pace::Pace;
 use pack::layout::View;
 use pack::{Anchor, PackStamp, PackedSources};
-use partition::Pace;
 use tiles::OpenTiles;
 
 /// The kernels and buffers of a device, which are kept from frame to frame.
@@ -77,7 +81,7 @@ impl Wave {
             open_tiles: OpenTiles::default(),
             counts: Counts::default(),
             depths: UploadedShared::new("the depth image"),
-            pace: Pace::new(compute.device().device_type),
+            pace: Pace::new(compute.device().form),
             cost: FrameCost::default(),
             under_way: VecDeque::new(),
             unwatched: Vec::new(),
@@ -89,6 +93,16 @@ impl Wave {
     /// Integrates by this rule, whatever the tolerance; `None`: by the one that meets it.
     pub(crate) fn set_rule(&mut self, rule: Option<Rule>) {
         self.rule = rule;
+    }
+
+    /// Cuts frames in this way, whatever the pace; `None`: by time.
+    pub fn force_split(&mut self, split: Option<Split>) {
+        self.pace.force(split);
+    }
+
+    /// Returns how many kernels the last frame enqueued.
+    pub fn launches(&self) -> u32 {
+        self.cost.launches
     }
 
     /// Returns the cost of what was drawn since the frame began.

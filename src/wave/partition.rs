@@ -1,121 +1,16 @@
-//! Cuts a frame into launches short enough for a desktop's watchdog and for Ctrl-C, by measured time.
+//! Parts of a frame's work, one for each launch: some pixels, and some of their sources or of their tiles.
 
 use std::ops::Range;
-use std::time::Duration;
 
 use super::pack::layout::Launch;
-use crate::opencl::DeviceType;
+use super::tiles;
 use crate::scene::kinds::KIND_COUNT;
 
 /// How many sources there are of each kind, in the order of the table.
 pub(super) type Counts = [u64; KIND_COUNT];
 
-/// What a launch aims at: on a GPU, since desktop systems reset one after a launch of seconds and draw nothing
-/// meanwhile; elsewhere, where each launch costs about 55 us (PoCL 3.1) and only Ctrl-C waits for it.
-const TARGET_ON_GPU: Duration = Duration::from_millis(40);
-const TARGET_ELSEWHERE: Duration = Duration::from_millis(125);
-
-/// Samples of the first launch, before anything was measured: some milliseconds on one slow core.
-const FIRST_SAMPLES: f64 = 4e6;
-
-/// Less is never aimed at.
-const LEAST_SAMPLES: f64 = 1e4;
-
-/// Growth of the launches from one to the next.
-const MOST_GROWTH: f64 = 16.0;
-
-/// How many samples of fields a launch may take.
-#[derive(Debug)]
-pub(super) struct Pace {
-    target: Duration,
-    samples: f64,
-    kinds: [bool; KIND_COUNT],
-}
-
-impl Pace {
-    pub(super) fn new(device: DeviceType) -> Self {
-        Self {
-            target: match device {
-                DeviceType::Gpu => TARGET_ON_GPU,
-                _ => TARGET_ELSEWHERE,
-            },
-            samples: FIRST_SAMPLES,
-            kinds: [false; KIND_COUNT],
-        }
-    }
-
-    /// Goes on as if the device had taken seconds for little.
-    pub(super) fn slow_down(&mut self) {
-        self.samples = LEAST_SAMPLES;
-    }
-
-    /// Begins a frame: what was measured holds for scenes of the same kinds of sources.
-    pub(super) fn begin(&mut self, counts: &Counts) {
-        let kinds = counts.map(|count| count > 0);
-        if kinds != self.kinds {
-            self.samples = self.samples.min(FIRST_SAMPLES);
-            self.kinds = kinds;
-        }
-    }
-
-    /// Learns from a launch.
-    pub(super) fn measured(&mut self, samples: f64, time: Duration) {
-        let possible = samples * self.target.as_secs_f64() / time.as_secs_f64().max(1e-6);
-        if samples == 0.0 {
-            return;
-        }
-        // A launch much below the pace says more about the overhead than about the device, unless it took too long.
-        if samples > 0.1 * self.samples || time > self.target {
-            self.samples = possible.clamp(LEAST_SAMPLES, MOST_GROWTH * self.samples);
-        }
-    }
-
-    /// How many of the next `left` pixels to launch: as many as the pace allows with all sources that a launch may
-    /// take, but not too few.
-    pub(super) fn pixels(&self, work: &Work, left: u32) -> u32 {
-        let sources = work.source_count.clamp(1, work.most_sources);
-        let samples = f64::from(work.node_count) * sources as f64;
-        let affordable = self.samples / samples;
-        let pixels = match f64::from(left) <= 2.0 * affordable {
-            true => left,
-            false => affordable as u32,
-        };
-        let grains = pixels.max(work.fewest_pixels).div_ceil(work.grain);
-        let pixels = grains.saturating_mul(work.grain);
-        pixels.min(work.most_pixels()).min(left)
-    }
-
-    /// Sees to it that a frame whose launches are all enqueued at once has not too many, also before anything was
-    /// measured.
-    pub(super) fn begin_unwatched(&mut self, work: &Work, pixels: u32) {
-        let all = f64::from(work.node_count) * work.source_count as f64 * f64::from(pixels);
-        self.samples = self.samples.max(all / MOST_LAUNCHES);
-    }
-
-    /// The next launch on some pixels, from a source on.
-    pub(super) fn part(&self, work: &Work, pixels: &Range<u32>, source: u64) -> Part {
-        let left = work.source_count - source;
-        Part {
-            pixels: pixels.clone(),
-            sources: source..source + self.sources(work, pixels.len() as u32, left),
-        }
-    }
-
-    /// How many of the next `left` sources to launch on so many pixels: up to twice the pace, rather than a second
-    /// launch for a small rest.
-    fn sources(&self, work: &Work, pixels: u32, left: u64) -> u64 {
-        let affordable = self.samples / (f64::from(work.node_count) * f64::from(pixels));
-        let left = left.min(work.most_sources);
-        if left as f64 <= 2.0 * affordable {
-            left
-        } else {
-            (affordable as u64).clamp(1, left)
-        }
-    }
-}
-
-/// Launches of a frame that nobody watches, about, at most.
-const MOST_LAUNCHES: f64 = 256.0;
+/// Shares that a pass over tiles is cut into: more than a launch has tiles that are worth a launch of their own.
+pub const TILE_SHARES: u32 = 1 << 16;
 
 impl Work {
     /// Pixels of a launch at most.
@@ -124,6 +19,30 @@ impl Work {
             .max(1)
             .saturating_mul(self.grain)
     }
+
+    /// Passes over the tiles; 0: by pixels.
+    pub(super) fn passes(&self) -> u32 {
+        match self.first_tile_size {
+            0 => 0,
+            size => tiles::pass_count(size),
+        }
+    }
+
+    /// What a pass takes at most, of what all pixels and sources would: 32 rays for each tile, the last pass also every
+    /// pixel. Passes before the last are nothing beside it.
+    pub(super) fn weight(&self, pass: u32) -> f64 {
+        let size = f64::from(self.first_tile_size >> pass);
+        let last = f64::from(u32::from(pass + 1 == self.passes()));
+        32.0 / (size * size) + last
+    }
+}
+
+/// Where some pixels' work goes on.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Place {
+    pub source: u64,
+    pub pass: u32,
+    pub share: u32,
 }
 
 /// A part of the work: consecutive pixels, and a range of the sources, counted over all kinds.
@@ -131,13 +50,52 @@ impl Work {
 pub(super) struct Part {
     pub pixels: Range<u32>,
     pub sources: Range<u64>,
+    /// By tiles: which passes, and, of [`TILE_SHARES`], which of their tiles.
+    pub passes: Range<u32>,
+    pub shares: Range<u32>,
 }
 
 impl Part {
     /// Samples of fields that it takes.
     pub(super) fn samples(&self, work: &Work) -> f64 {
         let sources = (self.sources.end - self.sources.start) as f64;
-        self.pixels.len() as f64 * sources * f64::from(work.node_count)
+        let all = self.pixels.len() as f64 * sources * f64::from(work.node_count);
+        match self.passes.len() as u32 == work.passes() {
+            true => all,
+            false => {
+                let share = f64::from(self.shares.len() as u32) / f64::from(TILE_SHARES);
+                all * share * work.weight(self.passes.start)
+            }
+        }
+    }
+
+    /// Whether no launch has looked at these pixels and these sources before.
+    pub(super) fn is_first(&self) -> bool {
+        self.passes.start == 0 && self.shares.start == 0
+    }
+
+    /// Returns where these pixels' work goes on; `None`: it is done.
+    pub(super) fn next(&self, work: &Work) -> Option<Place> {
+        let here = Place {
+            source: self.sources.start,
+            pass: self.passes.start,
+            share: self.shares.end,
+        };
+        if self.shares.end < TILE_SHARES {
+            return Some(here);
+        }
+        if self.passes.end < work.passes() {
+            let (pass, share) = (self.passes.end, 0);
+            return Some(Place {
+                pass,
+                share,
+                ..here
+            });
+        }
+        (self.sources.end < work.source_count).then(|| Place {
+            source: self.sources.end,
+            ..Place::default()
+        })
     }
 }
 
@@ -155,6 +113,8 @@ pub(super) struct Work {
     /// Above this many pixels, and this many sources, a launch takes too much memory.
     pub most_pixels: u32,
     pub most_sources: u64,
+    /// Side of the largest tiles, pixels; 0: by pixels.
+    pub first_tile_size: u32,
 }
 
 /// Sources of each kind in a part, as ranges of the lists.
@@ -189,68 +149,6 @@ pub(super) fn launch(part: &Part, counts: &Counts) -> Launch {
 mod tests {
     use super::*;
 
-    /// Every launch of a frame, at a device that does `rate` samples a second.
-    fn frame(pixels: u32, work: &Work, rate: f64) -> Vec<Part> {
-        let mut pace = Pace::new(DeviceType::Gpu);
-        let mut parts = Vec::new();
-        let mut pixel = 0;
-        while pixel < pixels {
-            let end = pixel + pace.pixels(work, pixels - pixel);
-            let mut source = 0;
-            loop {
-                let part = pace.part(work, &(pixel..end), source);
-                let samples = part.samples(work);
-                pace.measured(samples, Duration::from_secs_f64(samples / rate));
-                source = part.sources.end;
-                parts.push(part);
-                if source >= work.source_count {
-                    break;
-                }
-            }
-            pixel = end;
-        }
-        parts
-    }
-
-    #[test]
-    fn launches_cover_every_pixel_and_source_once_and_stay_short() {
-        for (pixels, node_count, source_count, rate) in [
-            (1, 3, 0, 1e9),
-            (512 * 512, 201, 1, 3e9),
-            (16384 * 16384, 201, 3, 1e12),
-            (4097, 65537, 5000, 1e9),
-            (300_000, 201, 1_000_000, 1e11),
-        ] {
-            let work = Work {
-                node_count,
-                source_count,
-                fewest_pixels: 1024,
-                grain: 1,
-                most_pixels: u32::MAX,
-                most_sources: u64::MAX,
-            };
-            let parts = frame(pixels, &work, rate);
-            let covered: f64 = parts
-                .iter()
-                .map(|part| {
-                    part.pixels.len() as f64 * (part.sources.end - part.sources.start) as f64
-                })
-                .sum();
-            assert_eq!(covered, f64::from(pixels) * source_count as f64);
-            let last = parts.last().unwrap();
-            assert_eq!((last.pixels.end, last.sources.end), (pixels, source_count));
-            let longest = parts
-                .iter()
-                .map(|part| part.samples(&work) / rate)
-                .fold(0.0, f64::max);
-            let one_source = f64::from(work.node_count * 1024.min(pixels)) / rate;
-            assert!(
-                longest <= (0.1_f64).max(one_source),
-                "{pixels} {source_count}: {longest} s"
-            );
-        }
-    }
-
     #[test]
     fn a_range_of_sources_falls_into_its_kinds() {
         let mut counts = [0; KIND_COUNT];
@@ -258,6 +156,8 @@ mod tests {
         let part = Part {
             pixels: 7..9,
             sources: 2..6,
+            passes: 0..0,
+            shares: 0..TILE_SHARES,
         };
         let Launch { begin, end, .. } = launch(&part, &counts);
         let range = |kind: usize| (begin[kind], end[kind]);

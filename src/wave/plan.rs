@@ -22,8 +22,6 @@ pub(crate) struct Plan {
     pub(super) work: Work,
     pub(super) task: Task,
     tolerance: f64,
-    /// Side of the largest tiles, pixels.
-    first_tile_size: u32,
 }
 
 /// Returns the rows at whose multiples an image may be cut and still be, to the bit, the same as in one piece.
@@ -52,7 +50,10 @@ impl Plan {
         tolerance: f64,
         units: u32,
     ) -> Self {
-        let first_tile_size = tiles::first_size(image);
+        let first_tile_size = match task.rays {
+            Rays::Tiles => tiles::first_size(image),
+            Rays::Pixels | Rays::Listed => 0,
+        };
         let (grain, most_pixels, most_sources) = match task.rays {
             Rays::Tiles => (
                 first_tile_size * image.width,
@@ -71,6 +72,7 @@ impl Plan {
             grain,
             most_pixels,
             most_sources,
+            first_tile_size,
         };
         Self {
             view,
@@ -80,7 +82,6 @@ impl Plan {
             work,
             task,
             tolerance,
-            first_tile_size,
         }
     }
 
@@ -100,13 +101,13 @@ impl Plan {
         (is_first, part.sources.end >= self.work.source_count)
     }
 
-    /// Returns the passes of a part; none where no tiles are wanted.
+    /// Returns the passes over the tiles of a part; none where no tiles are wanted.
     pub(super) fn passes(&self, part: &Part) -> Vec<TilePass> {
         match (self.task.rays, &self.view) {
             (Rays::Tiles, Some(view)) => {
                 let [x, y, z, _] = view.row_step;
                 let pixel_step = glam::Vec3::new(x, y, z).length();
-                let (size, tolerance) = (self.first_tile_size, self.tolerance);
+                let (size, tolerance) = (self.work.first_tile_size, self.tolerance);
                 let width = (view.width, pixel_step);
                 tiles::passes(part, &self.counts, width, size, tolerance)
             }

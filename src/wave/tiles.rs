@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::pack::layout::TilePass;
-use super::partition::{Counts, Part, word_count};
+use super::partition::{Counts, Part, TILE_SHARES, word_count};
 use crate::error::Result;
 use crate::image::ImageSize;
-use crate::opencl::{Compute, DeviceBuffer, DeviceType, OpenClDevice, RendererOptions};
+use crate::opencl::{Compute, DeviceBuffer, DeviceForm, OpenClDevice, RendererOptions, halved};
 use crate::scene::kinds::KIND_COUNT;
 
 /// Sides of the smallest and of the largest tile, pixels; each pass halves them.
@@ -33,11 +33,12 @@ pub(super) fn most_pixels(sources: u64) -> u32 {
     (48 * (MOST_OPEN_BYTES / bytes_of_tile)).min(1 << 23) as u32
 }
 
-/// Words of 32 sources of one launch, of which a group of work-items holds as many: 2 KiB of the 32 KiB of local memory
-/// that OpenCL 1.2 promises.
-const MOST_WORDS: u32 = 512;
+/// Words of 32 sources of one launch, of which a group of work-items holds as many: half a KiB of local memory. A launch
+/// takes one tile at least, with all of its sources.
+const MOST_WORDS: u32 = 128;
 
-/// Sources of one launch. Each kind begins with a new word, so that all but one may leave 31 bits of a word unused.
+/// Sources of one launch: always as many, so that those of a larger scene are summed in the same order whatever the
+/// pace. Each kind begins with a new word, so that all but one may leave 31 bits of a word unused.
 pub(super) const MOST_SOURCES: u64 = 32 * (MOST_WORDS as u64 - (KIND_COUNT as u64 - 1));
 
 const _: () = assert!(MOST_SOURCES as usize + 31 * KIND_COUNT <= 32 * MOST_WORDS as usize + 31);
@@ -55,7 +56,9 @@ const PLACE: usize = 2;
 
 /// Returns definitions for the kernels' compiler: calls instead of copies of what is needed in several places.
 pub(super) fn definitions(workers: u32) -> String {
-    format!(" -D PER_RAY= -D MOST_WORDS={MOST_WORDS} -D TILE_WORKERS={workers}")
+    format!(
+        " -D PER_RAY= -D MOST_WORDS={MOST_WORDS} -D TILE_WORKERS={workers} -D TILE_SHARES={TILE_SHARES}u"
+    )
 }
 
 /// Tiles that a pass leaves open, on the device.
@@ -103,7 +106,12 @@ fn most_coefficients(tolerance: f64) -> (f32, f32) {
     (3.0 * missing.powf(0.75) as f32, 1.6 * missing.sqrt() as f32)
 }
 
-/// Returns the passes over the tiles of a part, whole rows of tiles of an image.
+/// Returns how many passes there are with first tiles of this side.
+pub(super) fn pass_count(first_size: u32) -> u32 {
+    (first_size / SMALLEST).ilog2() + 1
+}
+
+/// Returns the passes over the tiles of a part that it takes, whole rows of tiles of an image.
 pub(super) fn passes(
     part: &Part,
     counts: &Counts,
@@ -116,7 +124,7 @@ pub(super) fn passes(
     let tile_count = columns * rows.div_ceil(first_size);
     let tolerance = tolerance.max(LEAST_TOLERANCE);
     let (most_odd, most_even) = most_coefficients(tolerance);
-    let last = (first_size / SMALLEST).ilog2();
+    let last = pass_count(first_size) - 1;
     let mut written: Range<u32> = 0..0;
     let mut pass = |level: u32| {
         let size = first_size >> level;
@@ -133,28 +141,36 @@ pub(super) fn passes(
             read_from,
             write_to: written.start,
             word_count: word_count(part, counts),
+            from: part.shares.start,
+            to: part.shares.end,
             pixel_step,
             most_odd,
             most_even,
             most_error: (MOST_ERROR * tolerance) as f32,
         }
     };
-    (0..=last).map(&mut pass).collect()
+    let passes = (0..=last).map(&mut pass);
+    passes
+        .filter(|pass| part.passes.contains(&pass.level))
+        .collect()
 }
 
-/// Returns the work-items of a group, which share the 16 nodes of a tile.
-pub(super) fn workers(device: &OpenClDevice, options: &RendererOptions) -> u32 {
+/// Returns the work-items of a group, which share the 16 nodes of a tile: no more than the device lets a group have.
+pub(crate) fn workers(device: &OpenClDevice, options: &RendererOptions) -> u32 {
     let most = 16 / options.lanes.unwrap_or(device.lanes);
-    let suitable = match device.device_type {
-        DeviceType::Gpu => most,
-        _ => 1,
+    let suitable = match device.form {
+        DeviceForm::Gpu => most,
+        DeviceForm::Cpu => 1,
     };
-    options.tile_workers.unwrap_or(suitable).min(most)
+    let wanted = options.tile_workers.unwrap_or(suitable).min(most);
+    halved(wanted as usize, device.most_workers as usize) as u32
 }
 
 /// Returns the groups of work-items for a pass on a device with this many compute units.
 pub(super) fn groups(pass: &TilePass, units: u32) -> usize {
-    ((pass.tile_count as usize) << (2 * pass.level)).min(GROUPS_A_UNIT * units as usize)
+    let most = u64::from(pass.tile_count) << (2 * pass.level);
+    let share = most * u64::from(pass.to - pass.from);
+    (share.div_ceil(TILE_SHARES.into()) as usize).min(GROUPS_A_UNIT * units as usize)
 }
 
 /// Returns the second node's pixel: the Chebyshev zeros stretched to the tile's first and last pixel lie 0.29 from
@@ -186,6 +202,8 @@ mod tests {
         let part = Part {
             pixels: 0..1,
             sources: 0..MOST_SOURCES,
+            passes: 0..1,
+            shares: 0..TILE_SHARES,
         };
         let words = word_count(&part, &counts);
         assert!(
@@ -201,6 +219,8 @@ mod tests {
         let part = Part {
             pixels: 0..1000 * 300,
             sources: 0..35,
+            passes: 0..5,
+            shares: 0..TILE_SHARES,
         };
         let passes = passes(&part, &counts, (1000, 1.0), 128, 1e-3);
         let sizes: Vec<u32> = passes.iter().map(|pass| pass.size).collect();

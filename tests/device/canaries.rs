@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::{full_scene, lane_widths};
 use energywave::internals::pack::{self, Anchor, Sources, layout};
 use energywave::internals::{
-    self, Argument, Compute, DeviceBuffer, FilmPart, KINDS, Rule, ViewPlane,
+    self, Argument, Compute, DeviceBuffer, FilmPart, KINDS, Rule, TILE_SHARES, ViewPlane,
 };
 use half::f16;
 
@@ -68,6 +68,7 @@ fn marks_left(
         columns: width.div_ceil(8),
         tile_count: width.div_ceil(8) * height.div_ceil(8),
         word_count: 4,
+        to: TILE_SHARES,
         pixel_step: 1e-3,
         ..bytemuck::Zeroable::zeroed()
     };
@@ -138,7 +139,9 @@ fn to_half(value: f32) -> u16 {
 #[test]
 fn nothing_is_written_behind_the_image() {
     let exact = Rule::of(1e-3, false, false).definitions();
-    let tiles = format!("{exact} -D PER_RAY= -D MOST_WORDS=4 -D TILE_WORKERS=1");
+    let tiles = format!(
+        "{exact} -D PER_RAY= -D MOST_WORDS=4 -D TILE_WORKERS=1 -D TILE_SHARES={TILE_SHARES}u"
+    );
     for lanes in lane_widths() {
         for (kernel, method) in [("render", ""), ("render", &exact), ("tiles", &tiles)] {
             for size in [(1, 1), (13, 7), (16, 4), (31, 1)] {

@@ -25,7 +25,7 @@ __kernel void paint(const View view, const FilmPart part, FILM_PARAMETER) {
     const uintv column = ((uintv)(first) + LANE_NUMBERS) % view.width;
     const floatv gradient = 0.125f * to_floatv(column);
     const float3v light = {gradient, splat(0.5f), fabs(ray.span.z) * inverse(ray.length)};
-    store_pixels(&part, begin, light, FILM_ARGUMENT);
+    store_pixels(&part, begin, add3(gathered_light(&part, begin, pixels), light), FILM_ARGUMENT);
 }
 "#;
 

@@ -10,4 +10,5 @@ mod distances; // compares the distance to every kind of core with float64
 mod film; // lets a second engine add its light to the wave's
 mod layout; // finds every field of every device struct by its name
 mod sanitizer; // runs every kernel on every lane width, small enough for a simulator
-mod several_devices; // draws one frame on several devices
+mod several_devices;
+mod splits; // cuts a frame into launches in every way // draws one frame on several devices

@@ -43,7 +43,6 @@ fn is_pocl() -> bool {
     is_pocl
 }
 
-/// One source, so that its light is never summed in parts.
 fn ring(width: u32, height: u32, sampling: Option<Sampling>) -> Scene {
     let mut scene = common::empty_scene(width, height);
     let tilted = common::torus([0.1, 0.0, 0.2], [0.2, 0.1, 1.0], 0.9);
@@ -103,6 +102,11 @@ fn equal_devices_draw_the_image_of_one_to_the_bit() {
             let mut scene = ring(90, 150, sampling);
             let near = |column: u32, row: u32| if column + row < 110 { 2.5 } else { 4.0 };
             scene.depth = Some(common::depths(&scene, DepthAlong::Ray, near));
+            scenes.push(scene.clone());
+            for k in 0..5 {
+                let place = [0.2 * f64::from(k) - 0.4, 0.3, 0.5];
+                scene.spheres.push(common::sphere(place, 0.4));
+            }
             scenes.push(scene);
         }
         let mut one = on(1);

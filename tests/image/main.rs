@@ -7,6 +7,7 @@ mod common;
 mod beams; // compares beams with the lines and points that they are made of
 mod depth; // compares occluded images with those of rays that are cut by hand
 mod exact; // holds the method `exact` to every tolerance
+mod figures; // draws every scene by every method in the form of the device
 mod hard_scenes; // takes the method `exact` through cores, along them, and to extreme numbers
 mod images; // bounds the worst pixel of the Simpson rule
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale

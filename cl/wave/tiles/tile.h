@@ -124,9 +124,13 @@ INLINE TileRays rays_of_tile(const Screen *const screen, const TilePass *const p
     return rays;
 }
 
-// Writes (or adds to) the pixels of a block from this ray on; the image has `columns` columns and `rows` rows of it.
+// Writes the pixels of a block from this ray on, and what is gathered for them; the image has `columns` columns and
+// `rows` rows of it.
 INLINE void store_block(const FilmPart *const part, const uint corner, const uint ray, const uint columns,
-                        const uint rows, const float3v color, FILM_PARAMETER) {
+                        const uint rows, float3v color, FILM_PARAMETER) {
+    const Clip clip = {ray, BLOCK_WIDTH, part->width, columns, rows};
+    if (part->adds)
+        color = add3(color, gathered_clipped(part, corner, &clip, pixels));
 #ifdef STORES_WHOLE
     if (columns >= BLOCK_WIDTH && rows >= BLOCK_HEIGHT && stores_whole(part)) {
         const uint first = corner + ray / BLOCK_WIDTH * part->width + ray % BLOCK_WIDTH;
@@ -135,6 +139,5 @@ INLINE void store_block(const FilmPart *const part, const uint corner, const uin
         return;
     }
 #endif
-    const Clip clip = {ray, BLOCK_WIDTH, part->width, columns, rows};
     store_clipped(part, corner, &clip, color, FILM_ARGUMENT);
 }

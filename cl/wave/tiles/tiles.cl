@@ -211,6 +211,11 @@ INLINE void render_tile(const TileTask *const task, const uint number, const Ope
         paint_tile(task, &tile, is_open, memory, FILM_ARGUMENT);
 }
 
+// Returns the first of so many tiles that lies after a share of them.
+uint share_of(const uint count, const uint share) {
+    return (uint)((ulong)count * share / TILE_SHARES);
+}
+
 __kernel __attribute__((reqd_work_group_size(TILE_WORKERS, 1, 1))) void
 tiles(const View view, const FilmPart part, const Integrand integrand, const Launch launch,
       __global const Node *const restrict nodes,
@@ -225,6 +230,7 @@ tiles(const View view, const FilmPart part, const Integrand integrand, const Lau
     const uint end_row = (part.first + part.count) / view.width;
     const TileTask task = {&screen, &part, &launch, &pass, &sources, &quadrature, end_row};
     const uint count = pass.level == 0 ? pass.tile_count : 4u * quadrature.counts[COUNT_OPEN_TILES + pass.level - 1u];
-    for (uint number = get_group_id(0); number < count; number += get_num_groups(0))
+    const uint end = share_of(count, pass.to);
+    for (uint number = share_of(count, pass.from) + get_group_id(0); number < end; number += get_num_groups(0))
         render_tile(&task, number, open, &memory, FILM_ARGUMENT);
 }

@@ -48,7 +48,7 @@ device_struct! {
 
 device_struct! {
     /// One pass over tiles of one size.
-    TilePass [56] {
+    TilePass [64] {
         size: u32 = 0,
         inner: u32 = 4,
         parent_inner: u32 = 8,
@@ -59,10 +59,12 @@ device_struct! {
         read_from: u32 = 28,
         write_to: u32 = 32,
         word_count: u32 = 36,
-        pixel_step: f32 = 40,
-        most_odd: f32 = 44,
-        most_even: f32 = 48,
-        most_error: f32 = 52,
+        from: u32 = 40,
+        to: u32 = 44,
+        pixel_step: f32 = 48,
+        most_odd: f32 = 52,
+        most_even: f32 = 56,
+        most_error: f32 = 60,
     }
 }
 
