@@ -16,6 +16,9 @@ const WORST_PIXEL: f64 = 2e-4;
 const OF_FLOAT32: f64 = 1e-7;
 const OF_FLOAT64: f64 = 3e-14;
 
+/// How black a dark stretch of a curve is, as a share of what the brightest weight everywhere would give.
+const OF_WEIGHTS: f64 = 3e-7;
+
 /// How an image compares with the float64 reference.
 #[derive(Debug, Clone)]
 pub struct Found {
@@ -146,9 +149,14 @@ impl<'a> Checked<'a> {
             return;
         }
         let tracer = Tracer::new(&self.hard.scene);
+        let even = with_even_weights(&self.hard.scene);
+        let even = even.as_ref().map(Tracer::new);
         for index in wrong {
             let (low, high) = tracer.range(index, reach);
-            let slack = tolerance * f64::from(self.light.as_slice()[4 * index]).abs();
+            let dark = even
+                .as_ref()
+                .map_or(0.0, |even| OF_WEIGHTS * even.light(index));
+            let slack = dark + tolerance * f64::from(self.light.as_slice()[4 * index]).abs();
             let drawn = f64::from(image.as_slice()[4 * index]);
             if low - slack <= drawn && drawn <= high + slack {
                 errors[index] = 0.0;
@@ -187,6 +195,17 @@ fn with_positive_light(scene: &Scene) -> Option<Scene> {
     (positive != *scene).then_some(positive)
 }
 
+/// Returns the scene with curves as bright everywhere as at their brightest weight; `None` if no curve has weights.
+fn with_even_weights(scene: &Scene) -> Option<Scene> {
+    let mut even = scene.clone();
+    for curve in even.curves.iter_mut() {
+        let weights = curve.intensity.take();
+        let most = weights.map(|weights| weights.into_iter().fold(0.0_f64, |a, b| a.max(b.abs())));
+        curve.coefficient = curve.coefficient.abs() * most.unwrap_or(1.0);
+    }
+    (even != *scene).then_some(even)
+}
+
 /// Integrates along rays beside those of an image, in float64.
 struct Tracer<'a> {
     scene: &'a Scene,
@@ -208,14 +227,27 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Returns the least and the greatest light of a pixel, of its first channel, whose ray is moved aside by so much.
-    fn range(&self, index: usize, reach: f64) -> (f64, f64) {
+    /// Returns the ray of a pixel, and where depths end it.
+    fn ray(&self, index: usize) -> (Ray, f64) {
         let width = self.scene.image.width as usize;
-        let (column, row) = ((index % width) as u32, (index / width) as u32);
-        let ray = self.plane.ray(column, row);
+        let ray = self
+            .plane
+            .ray((index % width) as u32, (index / width) as u32);
         let end = self.scene.depth.as_ref().map_or(1.0, |depth| {
             self.plane.end(&ray, depth.as_slice()[index], depth.along())
         });
+        (ray, end)
+    }
+
+    /// Returns the light of a pixel, of its first channel.
+    fn light(&self, index: usize) -> f64 {
+        let (ray, end) = self.ray(index);
+        self.radiance(&ray, end).x
+    }
+
+    /// Returns the least and the greatest light of a pixel, of its first channel, whose ray is moved aside by so much.
+    fn range(&self, index: usize, reach: f64) -> (f64, f64) {
+        let (ray, end) = self.ray(index);
         let right = self.plane.column_step.normalize();
         let down = self.plane.row_step.normalize();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
