@@ -32,11 +32,12 @@ floatv middle_of(const floatv n0, const floatv n1) {
 floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay, const Stretch stretch,
                   const floatv x0, const floatv x1, const uint is_square) {
     const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
+    const floatv nearest = distance2->nearest + distance2->missed;
     const floatv reach = 0.5f * twice_sqrt(max(floor2 - distance2->least, 1e-36f));
     const floatv x_begin = clamp(-reach, x0, x1), x_end = clamp(reach, x0, x1);
-    floatv begin = clamp((x_begin - distance2->offset) * per_slope, stretch.from, stretch.to);
+    floatv begin = clamp(fma(x_begin, per_slope, nearest), stretch.from, stretch.to);
     begin = select(select(begin, stretch.from, x0 >= -reach), stretch.to, x1 <= -reach);
-    floatv end = clamp((x_end - distance2->offset) * per_slope, stretch.from, stretch.to);
+    floatv end = clamp(fma(x_end, per_slope, nearest), stretch.from, stretch.to);
     end = select(select(end, stretch.to, x1 <= reach), stretch.from, x0 >= reach);
     const Stretch before = part_of(stretch, stretch.from, begin), after = part_of(stretch, end, stretch.to);
     const intv is_all = (x0 > -reach) & (x1 < reach);
@@ -52,8 +53,7 @@ floatv with_floor(const Quadratic *const distance2, const floatv floor2, const D
 // Integrates over a stretch. Lengths are doubled, the integral is not.
 INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distance2, const floatv floor2,
                             const Decay decay, const uint is_square) {
-    const floatv x0 = fma(distance2->slope, stretch.from, distance2->offset);
-    const floatv x1 = fma(distance2->slope, stretch.to, distance2->offset);
+    const floatv x0 = offset_at(distance2, stretch.from), x1 = offset_at(distance2, stretch.to);
     floatv over_v = without_floor(distance2, decay, stretch, x0, x1, is_square);
     const intv is_floored = distance2->least < floor2;
     if (any_lane(is_floored))

@@ -1,5 +1,6 @@
 // Squared distance from the points of a ray to a fixed point, or to a line seen along it: a quadratic in s, kept as
-// (slope s + offset)^2 + least, in which nothing cancels near the least distance.
+// (slope s + offset)^2 + least, in which nothing cancels near the least distance. Next to it, slope s + offset has more
+// digits as slope (s - nearest - missed): where a stretch of a ray ends at a core, they count.
 #pragma once
 #include "../../fine.h"
 #include "../../roots.h"
@@ -8,40 +9,44 @@
 typedef struct {
     floatv slope;
     floatv offset;
-    floatv least; // never 0: its root may be divided by
+    floatv least;           // never 0: its root may be divided by
+    floatv nearest, missed; // the parameter of the least, and what float32 has missed it by
 } Quadratic;
 
 // Returns |start + s span|^2 for a span of length `slope`.
 INLINE Quadratic squared_length_along(const float3v start, const float3v span, const floatv slope) {
     const floatv per_slope = inverse(slope);
     const floatv ahead = -dot3(start, span) * per_slope; // to the nearest point, a length
-    const float3v closest = fma3(span, ahead * per_slope, start);
-    const Quadratic q = {slope, -ahead, max(dot3(closest, closest), 1e-30f)};
+    const floatv nearest = ahead * per_slope;
+    const float3v closest = fma3(span, nearest, start);
+    const Quadratic q = {slope, -ahead, max(dot3(closest, closest), 1e-30f), nearest, splat(0.0f)};
     return q;
 }
 
-// Returns the squared length of the vector at the parameter of the least, which float32 has missed by a little, without
-// its part along the span. Never 0.
-floatv squared_length_beside(const Quadratic *const q, const float3v start, const float3v span) {
+// Refines the least, of which `start` is the vector at its parameter, with more digits. Far from the ray, where a ray
+// all but parallel to a line comes closest to it, there are none.
+void refine(Quadratic *const q, const float3v start, const float3v span) {
+    const intv is_near = fabs(q->nearest) < 1e3f;
     const floatv per_slope = inverse(q->slope);
     const floatv missed = clamp(-dot3(start, span) * per_slope * per_slope, -1e-4f, 1e-4f);
     const float3v beside = fma3(span, missed, start);
-    return max(dot3(beside, beside), 1e-30f);
+    q->least = select(q->least, max(dot3(beside, beside), 1e-30f), is_near);
+    q->missed = select(splat(0.0f), missed, is_near);
 }
 
 floatv length3(const float3v v) {
     return 0.5f * twice_sqrt(max(dot3(v, v), 1e-36f));
 }
 
-// Returns the parameter s of the least.
-floatv nearest_along(const Quadratic *const q) {
-    return -q->offset * inverse(q->slope);
-}
-
 // Returns the same with all lengths doubled, softened.
 Quadratic doubled(const Quadratic q, const floatv softening2) {
-    const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, 4.0f * (q.least + softening2)};
+    const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, 4.0f * (q.least + softening2), q.nearest, q.missed};
     return d;
+}
+
+// Returns slope s + offset with all digits that s has.
+floatv offset_at(const Quadratic *const q, const floatv s) {
+    return q->slope * ((s - q->nearest) - q->missed);
 }
 
 floatv quadratic_at(const Quadratic *const q, const floatv s) {
@@ -53,8 +58,7 @@ floatv quadratic_at(const Quadratic *const q, const floatv s) {
 INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, const float4 point_rest) {
     const float3v from_point = subtract3(ray->origin, uniform3(point));
     Quadratic distance2 = squared_length_along(from_point, ray->span, ray->length);
-    const fine3v closest = fine_between(ray, nearest_along(&distance2), point, point_rest);
-    distance2.least = squared_length_beside(&distance2, from_fine3(closest), ray->span);
+    refine(&distance2, from_fine3(fine_between(ray, distance2.nearest, point, point_rest)), ray->span);
     return doubled(distance2, ray->softening2);
 }
 
@@ -63,11 +67,19 @@ INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, co
 INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, const float4 point_rest,
                                    const float4 direction, const float4 direction_rest) {
     const float3v along = uniform3(direction);
+    const fine3v fine_along = fine3(direction, direction_rest);
     const float3v from_point = subtract3(ray->origin, uniform3(point));
-    const float3v span = cross3(ray->span, along);
-    Quadratic distance2 = squared_length_along(cross3(from_point, along), span, length3(span));
-    const fine3v closest = fine_between(ray, nearest_along(&distance2), point, point_rest);
-    const float3v from_line = from_fine3(fine_cross3(closest, fine3(direction, direction_rest)));
-    distance2.least = squared_length_beside(&distance2, from_line, span);
+    float3v start = cross3(from_point, along), span = cross3(ray->span, along);
+    // Of a ray along the line float32 leaves nothing but noise.
+    const intv is_parallel = dot3(span, span) < 1e-4f * ray->length * ray->length;
+    if (any_lane(is_parallel)) {
+        const fine3v fine_start = fine_between(ray, splat(0.0f), point, point_rest);
+        start = select3(start, from_fine3(fine_cross3(fine_start, fine_along)), is_parallel);
+        const float3v turned = scale3(from_fine3(fine_cross3(ray->fine_toward, fine_along)), ray->stretch);
+        span = select3(span, turned, is_parallel);
+    }
+    Quadratic distance2 = squared_length_along(start, span, length3(span));
+    const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
+    refine(&distance2, from_fine3(fine_cross3(closest, fine_along)), span);
     return doubled(distance2, ray->softening2);
 }

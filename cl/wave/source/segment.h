@@ -61,7 +61,8 @@ floatv segment_field(const segment_path *const path, const floatv s) {
 
 INLINE Quadratic segment_select(const Quadratic a, const Quadratic b, const intv is_b) {
     const Quadratic q = {select(a.slope, b.slope, is_b), select(a.offset, b.offset, is_b),
-                         select(a.least, b.least, is_b)};
+                         select(a.least, b.least, is_b), select(a.nearest, b.nearest, is_b),
+                         select(a.missed, b.missed, is_b)};
     return q;
 }
 
@@ -84,7 +85,7 @@ INLINE floatv segment_integral(const Ray *const ray, const Sources *const source
 Clearance segment_clearance(const Ray *const ray, const Sources *const sources, const uint index,
                             const float pixel_step) {
     const segment_path path = segment_along(ray, sources, index);
-    const floatv s = clamp(nearest_along(&path.to_line), 0.0f, ray->end);
+    const floatv s = clamp(path.to_line.nearest, 0.0f, ray->end);
     const intv is_beside =
         (fma(path.height_slope, s, path.over_first) >= 0.0f) & (fma(path.height_slope, s, path.over_last) <= 0.0f);
     const floatv of_line = quadratic_clearance(ray, &path.to_line, pixel_step).distance2;

@@ -134,12 +134,13 @@ INLINE floatv curve_closed_form(const curve_peaks *const peaks, const Decay deca
     const curve_path *const path = &peaks->path;
     floatv least;
     const floatv nearest = closest_to_core(path, peaks->span2, x, &least);
-    if (any_lane(least < 1e-5f * peaks->span2)) {
-        const float3v offset = offset_from_core(peaks, nearest, x);
-        least = max(dot3(offset, offset), 1e-30f);
-    }
     const floatv length = 0.5f * twice_sqrt(peaks->span2);
-    const Quadratic to_end = {length, -length * nearest, least + path->softening2};
+    Quadratic to_end = {length, -length * nearest, least, nearest, splat(0.0f)};
+    if (any_lane(least < 1e-5f * peaks->span2)) {
+        const float3v span = {path->along.slope, path->across.slope, path->normal.slope};
+        refine(&to_end, offset_from_core(peaks, nearest, x), span);
+    }
+    to_end.least += path->softening2;
     const floatv integral = integral_over(evenly_lit(from, to), &to_end, path->floor2, decay, path->is_square);
     return path->spline_count ? integral * curve_intensity(path, x) : integral;
 }
