@@ -5,7 +5,7 @@ use energywave::scene::{BeamEnd, Measure, Method, Ray, Sampling};
 use energywave::{RadianceImage, Renderer, Result, Scene, reference};
 use glam::DVec3;
 
-use crate::scenes::HardScene;
+use super::scenes::HardScene;
 
 /// What no float32 device can undercut: for 99.9 % of the pixels, and for the worst.
 const MOST_PIXELS: f64 = 2e-5;
@@ -15,6 +15,9 @@ const WORST_PIXEL: f64 = 2e-4;
 /// reference's own decide, on which side of a plane a ray runs.
 const OF_FLOAT32: f64 = 1e-7;
 const OF_FLOAT64: f64 = 3e-14;
+
+/// By how much the end of a ray may be off, as a share of its length.
+const OF_END: f64 = 1e-7;
 
 /// How black a dark stretch of a curve is, as a share of what the brightest weight everywhere would give.
 const OF_WEIGHTS: f64 = 3e-7;
@@ -138,21 +141,22 @@ impl<'a> Checked<'a> {
     /// Takes away the errors of pixels whose light is that of a ray so close beside theirs that rounding does not tell
     /// them apart.
     fn excuse(&self, image: &RadianceImage, errors: &mut [f64], tolerance: f64) {
-        let reach = match self.hard.is_sharp() {
+        let share = match self.hard.is_sharp() {
+            true if self.hard.is_exact => 0.0,
             true => OF_FLOAT64,
             false => OF_FLOAT32,
-        } * self.hard.scale;
+        };
         let wrong: Vec<usize> = (0..errors.len())
             .filter(|i| errors[*i] > tolerance)
             .collect();
-        if self.hard.is_exact || wrong.len() > errors.len() / 4 {
+        if wrong.len() > errors.len() / 4 {
             return;
         }
         let tracer = Tracer::new(&self.hard.scene);
         let even = with_even_weights(&self.hard.scene);
         let even = even.as_ref().map(Tracer::new);
         for index in wrong {
-            let (low, high) = tracer.range(index, reach);
+            let (low, high) = tracer.range(index, share * self.hard.scale);
             let dark = even
                 .as_ref()
                 .map_or(0.0, |even| OF_WEIGHTS * even.light(index));
@@ -245,13 +249,17 @@ impl<'a> Tracer<'a> {
         self.radiance(&ray, end).x
     }
 
-    /// Returns the least and the greatest light of a pixel, of its first channel, whose ray is moved aside by so much.
+    /// Returns the least and the greatest light of a pixel, of its first channel, whose ray is moved aside by so much,
+    /// or ends where rounding has it.
     fn range(&self, index: usize, reach: f64) -> (f64, f64) {
         let (ray, end) = self.ray(index);
         let right = self.plane.column_step.normalize();
         let down = self.plane.row_step.normalize();
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for step in 0..16 {
+        let sooner = self.radiance(&ray, end * (1.0 - OF_END)).x;
+        let later = self.radiance(&ray, end * (1.0 + OF_END)).x;
+        let (mut low, mut high) = (sooner.min(later), sooner.max(later));
+        let steps = if reach > 0.0 { 16 } else { 0 };
+        for step in 0..steps {
             let angle = f64::from(step % 8) * std::f64::consts::FRAC_PI_4;
             let shift = reach * (right * angle.cos() + down * angle.sin());
             let shift = if step < 8 { shift } else { 0.1 * shift };
