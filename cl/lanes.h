@@ -93,6 +93,11 @@ float3v fma3(const float3v a, const floatv k, const float3v b) {
     return r;
 }
 
+float3v select3(const float3v a, const float3v b, const intv is_b) {
+    const float3v r = {select(a.x, b.x, is_b), select(a.y, b.y, is_b), select(a.z, b.z, is_b)};
+    return r;
+}
+
 floatv dot3(const float3v a, const float3v b) {
     return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
 }

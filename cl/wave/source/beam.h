@@ -98,7 +98,7 @@ INLINE floatv beam_integral(const Ray *const ray, const Sources *const sources, 
 // Returns the clearance of the line ahead of the tip, or of the tip. Lengths are doubled.
 Clearance beam_clearance(const Ray *const ray, const Sources *const sources, const uint index, const float pixel_step) {
     const beam_path path = beam_along(ray, sources, index);
-    const floatv s = clamp(nearest_along(&path.to_line), 0.0f, ray->end);
+    const floatv s = clamp(path.to_line.nearest, 0.0f, ray->end);
     const floatv ahead = path.has_taper ? fma(path.taper_slope, s, path.taper) : height_at(&path.height, s);
     const Clearance of_line = quadratic_clearance(ray, &path.to_line, pixel_step);
     const Clearance of_tip = quadratic_clearance(ray, &path.to_tip, pixel_step);

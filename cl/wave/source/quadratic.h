@@ -1,5 +1,6 @@
 // Squared distance from the points of a ray to a fixed point, or to a line seen along it: a quadratic in s, kept as
-// (slope s + offset)^2 + least, in which nothing cancels near the least distance.
+// (slope s + offset)^2 + least, in which nothing cancels near the least distance. Next to it, slope s + offset has more
+// digits as slope (s - nearest) + ahead: where a stretch of a ray ends at a core, they count.
 #pragma once
 #include "../../fine.h"
 #include "../../roots.h"
@@ -21,13 +22,16 @@ INLINE Quadratic squared_length_along(const float3v start, const float3v span, c
     return q;
 }
 
-// Refines a squared length by the vector at the parameter of the least, which float32 has missed by a little.
+// Refines a squared length by the vector at the parameter of the least, which float32 has missed by a little. Far from
+// the ray, where one all but parallel to a line comes closest to it, there are no more digits.
 INLINE void refine(Quadratic *const q, const float3v at_nearest, const float3v span) {
+    const intv is_near = fabs(q->nearest) < 1e3f;
     const floatv per_slope = inverse(q->slope);
-    q->ahead = dot3(at_nearest, span) * per_slope;
-    const float3v beside = fma3(span, -q->ahead * per_slope, at_nearest);
-    q->least = max(dot3(beside, beside), 1e-30f);
-    q->offset = fma(-q->slope, q->nearest, q->ahead);
+    const floatv ahead = dot3(at_nearest, span) * per_slope;
+    const float3v beside = fma3(span, -ahead * per_slope, at_nearest);
+    q->ahead = select(q->ahead, ahead, is_near);
+    q->least = select(q->least, max(dot3(beside, beside), 1e-30f), is_near);
+    q->offset = select(q->offset, fma(-q->slope, q->nearest, ahead), is_near);
 }
 
 // Returns slope s + offset at the parameter s + rest, with all digits next to the least.
@@ -37,11 +41,6 @@ floatv along_at(const Quadratic *const q, const floatv s, const floatv rest) {
 
 floatv length3(const float3v v) {
     return 0.5f * twice_sqrt(max(dot3(v, v), 1e-36f));
-}
-
-// Returns the parameter s of the least.
-floatv nearest_along(const Quadratic *const q) {
-    return q->nearest;
 }
 
 // Returns the same with all lengths doubled, softened.
@@ -74,10 +73,16 @@ INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, con
     const float3v along = uniform3(direction);
     const fine3v fine_along = fine3(direction, direction_rest);
     const float3v from_point = subtract3(ray->origin, uniform3(point));
-    float3v span = cross3(ray->span, along);
-    if (any_lane(dot3(span, span) < ALONG * ALONG * ray->length * ray->length))
-        span = scale3(from_fine3(fine_cross3(ray->fine_toward, fine_along)), ray->stretch);
-    Quadratic distance2 = squared_length_along(cross3(from_point, along), span, length3(span));
+    float3v start = cross3(from_point, along), span = cross3(ray->span, along);
+    // Of a ray along the line float32 leaves nothing but noise.
+    const intv is_along = dot3(span, span) < ALONG * ALONG * ray->length * ray->length;
+    if (any_lane(is_along)) {
+        const fine3v fine_start = fine_between(ray, splat(0.0f), point, point_rest);
+        start = select3(start, from_fine3(fine_cross3(fine_start, fine_along)), is_along);
+        const float3v turned = scale3(from_fine3(fine_cross3(ray->fine_toward, fine_along)), ray->stretch);
+        span = select3(span, turned, is_along);
+    }
+    Quadratic distance2 = squared_length_along(start, span, length3(span));
     const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
     refine(&distance2, from_fine3(fine_cross3(closest, fine_along)), span);
     return doubled(distance2, ray->softening2);

@@ -80,7 +80,7 @@ INLINE floatv segment_integral(const Ray *const ray, const Sources *const source
 Clearance segment_clearance(const Ray *const ray, const Sources *const sources, const uint index,
                             const float pixel_step) {
     const segment_path path = segment_along(ray, sources, index);
-    const floatv s = clamp(nearest_along(&path.to_line), 0.0f, ray->end);
+    const floatv s = clamp(path.to_line.nearest, 0.0f, ray->end);
     const intv is_beside = (height_at(&path.over_first, s) >= 0.0f) & (height_at(&path.over_last, s) <= 0.0f);
     const floatv of_line = quadratic_clearance(ray, &path.to_line, pixel_step).distance2;
     const floatv of_first = quadratic_clearance(ray, &path.to_first, pixel_step).distance2;

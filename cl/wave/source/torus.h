@@ -109,7 +109,7 @@ INLINE uint torus_panels(const torus_peaks *const peaks, const Decay decay, floa
                          floatv *const integral) {
     const Quadratic *const rho2 = &peaks->path.rho2;
     to[0] = peaks->ray->end;
-    to[1] = from[0] = clamp(nearest_along(rho2), 0.0f, to[0]);
+    to[1] = from[0] = clamp(rho2->nearest, 0.0f, to[0]);
     from[1] = splat(0.0f);
     *integral = splat(0.0f);
     return 2;

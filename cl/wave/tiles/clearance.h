@@ -27,7 +27,7 @@ Clearance clear_by(const floatv distance2) {
 
 // Returns the clearance of a quadratic squared distance. Lengths are doubled.
 Clearance quadratic_clearance(const Ray *const ray, const Quadratic *const distance2, const float pixel_step) {
-    const floatv s = clamp(nearest_along(distance2), 0.0f, ray->end);
+    const floatv s = clamp(distance2->nearest, 0.0f, ray->end);
     return clear_by(in_pixels2(ray, pixel_step, s, 0.25f * quadratic_at(distance2, s)));
 }
 
