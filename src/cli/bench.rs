@@ -13,7 +13,7 @@ use energywave::{Device, DeviceType, Error, Renderer, Scene};
 use serde::Serialize;
 
 use super::args::{BenchArguments, TableName};
-use super::{Outcome, choose_devices, note, print, print_json};
+use super::{Outcome, choose_devices, note, print, print_json, tell_depths};
 
 /// A cell of a table.
 #[derive(Serialize)]
@@ -220,6 +220,7 @@ fn print_cell(cell: &Cell, is_first: bool) -> Outcome {
 
 fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     let scene = Scene::from_file_with(path, |scene, keys| arguments.overrides.apply(scene, keys))?;
+    tell_depths(&scene, false);
     let (devices, mut renderer) = prepare(arguments)?;
     let speed = measure(&mut renderer, &scene, time(arguments))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::args::CompareArguments;
 use super::progress::{Progress, catch_interrupts};
-use super::{Outcome, choose_devices, note, print, print_json};
+use super::{Outcome, choose_devices, note, print, print_json, tell_depths};
 
 #[derive(Serialize)]
 struct Row {
@@ -48,6 +48,7 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
         scene.image = arguments.size.unwrap_or(scene.image);
         Ok(())
     })?;
+    tell_depths(&scene, arguments.quiet);
     let devices = choose_devices(arguments.device.device.as_deref())?;
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     catch_interrupts();

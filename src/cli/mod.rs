@@ -12,7 +12,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
-use energywave::{Device, Devices, Error, ErrorKind};
+use energywave::{Device, Devices, Error, ErrorKind, Scene};
 
 use args::{Arguments, Command};
 
@@ -99,6 +99,22 @@ fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
         }
     }
     Ok(chosen)
+}
+
+/// Says on standard error what the scene's depths come to; if `quiet`, only what is likely wrong with them.
+fn tell_depths(scene: &Scene, quiet: bool) {
+    let Some(report) = scene.depth_report() else {
+        return;
+    };
+    let file = scene.depth.as_ref().and_then(|depth| depth.file());
+    let name = file.and_then(|file| file.file_name()).unwrap_or_default();
+    let name = name.to_string_lossy();
+    if !quiet {
+        note(&format!("depth: {name}: {report}"));
+    }
+    for warning in &report.warnings {
+        note(&format!("warning: {name}: {warning}"));
+    }
 }
 
 /// Writes one line to standard error.

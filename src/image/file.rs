@@ -10,7 +10,8 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use tempfile::NamedTempFile;
 
-use super::{Display, DisplayImage, ImageSize, RadianceImage};
+use super::openexr::OpenExr;
+use super::{Display, DisplayImage, RadianceImage};
 use crate::error::{Error, Result};
 
 /// A file format, chosen by the ending of a file's name.
@@ -179,24 +180,31 @@ impl RadianceImage {
         ImageFile::create(path)?.write(self, display)
     }
 
-    /// Reads the colour of a linear `.exr`.
+    /// Reads the colour of a linear `.exr`: its channels R, G and B, and A, which is 1 where there is none.
     ///
     /// # Errors
-    /// [`Error::Input`] if the file cannot be read or is no EXR image.
+    /// [`Error::Input`] if the file cannot be read, is no OpenEXR image, or has not these channels.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let fail = |error: ImageError| Error::input(path, reason(&error)).caused_by(error);
-        let reader =
-            image::ImageReader::open(path).map_err(|error| fail(ImageError::IoError(error)))?;
-        let pixels = reader.decode().map_err(fail)?.into_rgba32f();
-        let size = ImageSize {
-            width: pixels.width(),
-            height: pixels.height(),
+        let fail = |reason: String| Error::input(path, reason);
+        let file = OpenExr::open(path)?;
+        let all = file.channels();
+        let of = |name: &str| all.iter().find(|channel| channel.name == name);
+        let (Some(red), Some(green), Some(blue)) = (of("R"), of("G"), of("B")) else {
+            return Err(fail("it has no channels R, G and B".to_owned()));
         };
-        Ok(Self {
-            size,
-            data: pixels.into_raw(),
-        })
+        let mut ids = vec![red.id, green.id, blue.id];
+        ids.extend(of("A").map(|alpha| alpha.id));
+        let planes = file.planes(&ids).map_err(fail)?;
+        let mut image = Self::new(file.display())?;
+        let mut opaque = image.data.iter_mut().skip(3).step_by(4);
+        opaque.by_ref().for_each(|alpha| *alpha = 1.0);
+        for (channel, plane) in planes.iter().enumerate() {
+            plane.place(file.display(), |pixel, value| {
+                image.data[4 * pixel + channel] = value;
+            });
+        }
+        Ok(image)
     }
 }
 

@@ -170,8 +170,11 @@ fn depths_hide_light_or_are_refused_before_anything_is_written() {
 
     let before = folder.names().len();
     for (file, words) in [
-        ("nan.exr", "nan.exr: NaN at column 0, row 0"),
-        ("negative.exr", "negative.exr: -1 at column 0, row 0"),
+        ("nan.exr", "nan.exr: channel R: NaN at column 0, row 0"),
+        (
+            "negative.exr",
+            "negative.exr: channel R: -1 at column 0, row 0",
+        ),
         ("text.exr", "text.exr: not an OpenEXR image"),
         ("nowhere.exr", "nowhere.exr: cannot read"),
     ] {

@@ -8,6 +8,9 @@ mod bad_scenes; // has every fault of a scene file named with its place
 mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
 #[cfg(unix)] // shells, signals and the loader's environment variables
 mod cli; // runs the program: exit codes, messages and outputs
+mod damaged; // changes bytes of images and scenes
+#[cfg(unix)] // as cli
+mod depths; // reads depth images of other programs
 mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
 mod scene_files; // reads again what was written

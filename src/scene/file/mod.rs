@@ -1,5 +1,6 @@
 //! Reads a scene from TOML or JSON; every fault is reported with file, line, column and key.
 
+mod depth;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
@@ -14,7 +15,7 @@ use super::kinds::for_each_kind;
 use super::values::{Fault, unnamed};
 use super::*;
 use crate::error::{Error, Result, SceneError};
-use crate::image::DepthAlong;
+use depth::DepthTable;
 use locate::{KeyMap, line_and_column};
 
 /// Changes a scene between its reading and its check.
@@ -73,16 +74,6 @@ for_each_kind!(define_scene_file);
 
 fn is_empty<T>(list: &List<T>) -> bool {
     list.len() == 0
-}
-
-/// A depth image in a file of its own.
-#[derive(Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct DepthTable {
-    /// From the folder of the scene.
-    file: PathBuf,
-    #[serde(default)]
-    along: DepthAlong,
 }
 
 /// `[integration]`: keys of both methods may stand there, whichever is chosen.
@@ -207,9 +198,7 @@ impl SceneFile {
         scene.check()?;
         adjust(&mut scene, &self.integration.keys())?;
         if let (Some(depth), None) = (&self.depth, &scene.depth) {
-            let image = DepthImage::open(folder.join(&depth.file), depth.along)
-                .map_err(|error| SceneError::value("depth.file", error.to_string()))?;
-            scene.depth = Some(image);
+            scene.depth = Some(depth.open(folder)?);
         }
         scene.check()?;
         Ok(scene)

@@ -17,13 +17,9 @@ impl Serialize for Scene {
     fn serialize<S: Serializer>(&self, writer: S) -> std::result::Result<S::Ok, S::Error> {
         let depth = match &self.depth {
             None => None,
-            Some(depth) => Some(DepthTable {
-                file: depth
-                    .file()
-                    .ok_or_else(|| serde::ser::Error::custom(NO_FILE))?
-                    .to_owned(),
-                along: depth.along(),
-            }),
+            Some(depth) => {
+                Some(DepthTable::of(depth).ok_or_else(|| serde::ser::Error::custom(NO_FILE))?)
+            }
         };
         SceneFile::of(self, depth).serialize(writer)
     }
