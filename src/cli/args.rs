@@ -34,11 +34,14 @@ pub enum Command {
 
 #[derive(Debug, Args)]
 pub struct RenderArguments {
-    /// Scene file, TOML or (.json) JSON
+    /// Scene file, TOML or (.json) JSON; - is standard input
     pub scene: PathBuf,
-    /// Image to write: .png (8-bit sRGB) or .exr (32-bit linear)
+    /// Image to write: .png (8-bit sRGB) or .exr (32-bit linear); - is standard output
     #[arg(short, long)]
     pub output: PathBuf,
+    /// Format of the image [default: by the ending of its name; png where that has none]
+    #[arg(long)]
+    pub format: Option<FormatName>,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
@@ -200,6 +203,14 @@ pub enum SamplingName {
     Pixels,
     /// At every pixel near cores, interpolated within the tolerance elsewhere
     Tiles,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum FormatName {
+    /// 8-bit sRGB, tone-mapped
+    Png,
+    /// 32-bit linear
+    Exr,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

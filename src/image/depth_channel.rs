@@ -128,7 +128,7 @@ impl<'a> Pass<'a> {
         }
         let (first, z) = (self.channels[0], self.get("z"));
         // X, Y, Z: a vector, whose Z is no depth.
-        if self.get("x").is_some() || says_other(z.unwrap_or(first)) {
+        if (self.get("x").is_some() && z.is_some()) || says_other(z.unwrap_or(first)) {
             return None;
         }
         let by_layer = first.path().filter_map(|word| rank_of(&word)).min();
@@ -201,8 +201,19 @@ fn says_other(channel: &ChannelName) -> bool {
         "n", "nn", "ng", "ns", "norm", "norms", "p", "pp", "pos", "pworld", "pref", "vec", "vel",
         "mv", "uv", "uvw", "st", "tangent", "mist", "fog", "zback", "back",
     ];
-    const WITHIN: [&str; 7] = [
-        "normal", "position", "vector", "velocity", "motion", "crypto", "world",
+    const WITHIN: [&str; 12] = [
+        "normal",
+        "position",
+        "vector",
+        "velocity",
+        "motion",
+        "crypto",
+        "world",
+        "field",
+        "mask",
+        "matte",
+        "invers",
+        "disparity",
     ];
     channel.path().chain([channel.base()]).any(|name| {
         let mut words = name.split(|c: char| !c.is_alphabetic());
@@ -324,6 +335,9 @@ mod tests {
             ("distance", "!distance"),
             ("A B G R", "=R"),
             ("Depth.V Depth.A", "!Depth.V"),
+            ("R G B depth.X", "depth.X"),
+            ("R G B z", "z"),
+            ("rgba.red rgba.green rgba.blue depth.Z forward.u", "depth.Z"),
         ] {
             assert_eq!(chosen(names).as_deref(), Some(expected), "{names}");
         }
@@ -345,6 +359,9 @@ mod tests {
             "Y R",
             "R G B A foreground.R foreground.G foreground.B",
             "motion.R",
+            "R G DepthOfField.R",
+            "R G depth_mask.R",
+            "R G B inverse_depth.V",
             "Depth.R Depth.G",
         ] {
             assert_eq!(chosen(names), None, "{names}");

@@ -8,8 +8,9 @@ use exr::prelude::{AnyChannels, Encoding, Image, LayerAttributes, WritableImage}
 use super::depth::Origin;
 use super::depth_channel::{Choice, choose, escaped, listed, named};
 use super::openexr::{ChannelId, ChannelName, OpenExr, Plane};
-use super::{DepthImage, DepthOptions, ImageFile, ImageFormat};
+use super::{DepthImage, DepthOptions, ImageFormat};
 use crate::error::{Error, Result};
+use crate::output::Output;
 
 impl DepthImage {
     /// Reads an OpenEXR image. Where the data window leaves a part of the display window out, nothing hides the light.
@@ -99,9 +100,9 @@ impl DepthImage {
             AnyChannels::sort([channel].into_iter().collect()),
         );
         let image = Image::from_layer(layer);
-        ImageFile::create(path)?.write_with(|file| {
+        Output::create(path)?.write_with(|writer| {
             let write = image.write().non_parallel();
-            write.to_buffered(file).map_err(|error| match error {
+            write.to_buffered(writer).map_err(|error| match error {
                 exr::error::Error::Io(error) => error,
                 other => std::io::Error::other(other),
             })

@@ -17,6 +17,8 @@ pub use compare::{Difference, compare};
 pub use depth::{DepthAlong, DepthImage, DepthOptions};
 #[cfg(feature = "files")]
 pub use file::{ImageFile, ImageFormat};
+#[cfg(feature = "files")]
+pub use openexr::DECODER_THREAD;
 pub use size::ImageSize;
 pub use tone_map::{Display, ToneMap};
 

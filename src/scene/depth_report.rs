@@ -4,8 +4,10 @@
 use super::{Camera, Scene, ViewPlane};
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 
-/// A share from which on depths count as all.
-const NEARLY_ALL: f64 = 0.95;
+/// Shares of the depths from which on it is likely that they are in other units. What lies before the plane is black:
+/// no picture is meant to be so by half. A wall may stand behind all that glows.
+const TOO_MANY_BEFORE: f64 = 0.5;
+const TOO_MANY_BEYOND: f64 = 0.95;
 /// World units from which on nothing is there: scenes reach up to it.
 const NOWHERE: f64 = 1e9;
 
@@ -56,9 +58,11 @@ impl std::fmt::Display for DepthReport {
         }
         write!(
             f,
-            "{} of the pixels without a depth, {} before the projection plane (nothing is drawn there)",
+            "{} of the pixels without a depth, {} before the projection plane (nothing is drawn there), {} beyond the \
+             rays (nothing is hidden there)",
             percent(self.without),
-            percent(self.before_plane)
+            percent(self.before_plane),
+            percent(self.beyond_rays)
         )
     }
 }
@@ -120,27 +124,28 @@ fn warnings(depth: &DepthImage, camera: &Camera, counts: &Counts) -> Vec<String>
         ));
     }
     let others = counts.with - counts.zero;
-    let is_nearly_all = |count: usize| others > 0 && count as f64 >= NEARLY_ALL * others as f64;
+    let is_over = |count: usize, share: f64| others > 0 && count as f64 >= share * others as f64;
     let before = counts.before - counts.zero;
+    let is_before = is_over(before, TOO_MANY_BEFORE);
     let looks_farther = camera.eye.distance(camera.target) > 1.0;
     let is_everywhere = counts.with == counts.pixels && looks_farther;
-    if others > 0 && counts.farthest <= 1.0 && (is_everywhere || is_nearly_all(before)) {
+    if others > 0 && counts.farthest <= 1.0 && (is_everywhere || is_before) {
         found.push(format!(
             "all depths lie between {} and {}: likely those of a z-buffer, which are no lengths and cannot be read, or \
              in other units; write them in world units, or give `scale`",
             counts.nearest, counts.farthest
         ));
-    } else if is_nearly_all(before) {
+    } else if is_before {
         found.push(format!(
-            "{} of the depths lie before the projection plane, {} from the eye, where nothing is drawn: likely they are \
-             in other units; give `scale`, or a smaller `near`",
+            "{} of the depths lie before the projection plane, {} from the eye, where nothing is drawn: likely they \
+             are in other units; give `scale`, or a smaller `near`",
             percent(before as f64 / others as f64),
             camera.near
         ));
-    } else if is_nearly_all(counts.beyond) {
+    } else if is_over(counts.beyond, TOO_MANY_BEYOND) {
         found.push(format!(
-            "{} of the depths lie beyond the ends of the rays, {} from the projection plane, so that they hide nothing: \
-             likely they are in other units; give `scale`",
+            "{} of the depths lie beyond the ends of the rays, {} from the projection plane, so that they hide \
+             nothing: likely they are in other units; give `scale`",
             percent(counts.beyond as f64 / others as f64),
             camera.ray_length()
         ));
@@ -197,7 +202,7 @@ mod tests {
         assert_eq!(shares, [0.25, 0.1, 0.01]);
         assert_eq!(found.warnings, Vec::<String>::new());
         let line = "0.5 to 900, 25 % of the pixels without a depth, 10 % before the projection plane (nothing is drawn \
-                    there)";
+                    there), 1 % beyond the rays (nothing is hidden there)";
         assert_eq!(found.to_string(), line);
         let open = report(|_| f32::INFINITY);
         assert_eq!((open.range, open.without), (None, 1.0));
@@ -224,8 +229,8 @@ mod tests {
             "all depths lie between 0.003 and",
         );
         told(
-            |column| if column < 3 { 3.0 } else { 0.4 },
-            "97 % of the depths lie before the projection plane, 1 from",
+            |column| if column < 45 { 3.0 } else { 0.4 },
+            "55 % of the depths lie before the projection plane, 1 from",
         );
         told(
             |column| 0.9 + 0.001 * column as f32,

@@ -3,7 +3,7 @@
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::program::{Folder, PROGRAM, SCENE, device, expect, stderr};
+use crate::common::program::{Folder, PROGRAM, SCENE, device, expect, stderr, wait_for_the_device};
 use energywave::RadianceImage;
 
 #[test]
@@ -273,7 +273,7 @@ fn ctrl_c_exits_with_130_and_leaves_nothing() {
 /// Presses Ctrl-C in the middle of minutes of work.
 fn interrupt_on(device: &str) {
     let folder = Folder::new();
-    let child = folder
+    let mut child = folder
         .command()
         .args([
             "render",
@@ -290,15 +290,7 @@ fn interrupt_on(device: &str) {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let begun = Instant::now();
-    // The temporary file beside the target says that the work has begun.
-    while folder.names().is_empty() {
-        assert!(
-            begun.elapsed() < Duration::from_secs(20),
-            "the work never began"
-        );
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    wait_for_the_device(&mut child);
     let interrupt = format!("kill -INT {}", child.id()); // the shell's own: minimal systems have no other
     assert!(
         Command::new("sh")

@@ -1,6 +1,7 @@
 //! Damaged files: whatever bytes change or are missing, a file ends in a result or in an error, never in a panic, an
 //! abort, or an allocation of what it claims. `ENERGYWAVE_FUZZ_SECONDS` goes on for so long, from another seed.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -87,6 +88,7 @@ fn a_damaged_image_ends_in_a_result_or_an_error() {
     let path = folder.path().join("damaged.exr");
     let images = images();
     let (mut read, mut refused) = (0, 0);
+    let mut caught = BTreeMap::new(); // panics of the decoder, with the first file
     let mut check = |bytes: &[u8], what: &dyn Fn() -> String| {
         fs::write(&path, bytes).unwrap();
         let (kind, message) = match DepthImage::open(&path, DepthAlong::Ray) {
@@ -98,6 +100,9 @@ fn a_damaged_image_ends_in_a_result_or_an_error() {
             Err(error) => (error.kind(), error.to_string()),
         };
         refused += 1;
+        if let Some((_, panic)) = message.split_once("the decoder gave up: ") {
+            caught.entry(panic.to_owned()).or_insert_with(what);
+        }
         let is_line = !message.contains(char::is_control) && message.len() < 3000;
         assert!(is_line && kind == ErrorKind::Input, "{}: {message}", what());
         if let Err(error) = RadianceImage::open(&path) {
@@ -121,7 +126,7 @@ fn a_damaged_image_ends_in_a_result_or_an_error() {
             }
         }
     }
-    println!("{read} read, {refused} refused");
+    println!("{read} read, {refused} refused; panics caught: {caught:#?}");
     assert!(
         read > 100 && refused > 500,
         "{read} read, {refused} refused"

@@ -13,5 +13,7 @@ mod damaged; // changes bytes of images and scenes
 mod depths; // reads depth images of other programs
 mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
+#[cfg(unix)] // as cli
+mod outputs; // writes to links, pipes and devices, and reads scenes from pipes
 mod scene_files; // reads again what was written
 mod verify; // checks known rays, past sources and past whole scenes

@@ -5,14 +5,15 @@ use std::thread::{Builder, scope};
 
 use super::Outcome;
 
-/// The name of the thread that decodes: who hears of panics can tell by it that this one is caught.
-const NAME: &str = "energywave: decoding";
+/// The name of the thread on which files are decoded. A panic there is caught and ends in an error: a program that
+/// hears of panics (`std::panic::set_hook`) need not tell of it.
+pub const DECODER_THREAD: &str = "energywave: decoding";
 
 /// Does the work on a thread of its own, whose panic is a reason.
 pub(super) fn guarded<T: Send>(work: impl FnOnce() -> Outcome<T> + Send) -> Outcome<T> {
     scope(|scope| {
         let thread = Builder::new()
-            .name(NAME.to_owned())
+            .name(DECODER_THREAD.to_owned())
             .spawn_scoped(scope, work)
             .map_err(|error| format!("no thread to read it: {error}"))?;
         thread.join().unwrap_or_else(|panic| {

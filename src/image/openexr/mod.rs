@@ -16,6 +16,8 @@ use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::Compression;
 
 use super::ImageSize;
+pub use guard::DECODER_THREAD;
+
 use crate::error::{Error, Result};
 use crate::memory;
 

@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::{DepthTable, SceneFile};
 use crate::error::{Error, Result};
+use crate::output::Output;
 use crate::scene::Scene;
 
 /// Why a scene cannot be written.
@@ -53,7 +54,6 @@ impl Scene {
             true => super::json::write(self)?,
             false => self.to_toml()?,
         };
-        std::fs::write(path, text)
-            .map_err(|error| Error::output(path, error.to_string()).caused_by(error))
+        Output::create(path)?.write_with(|writer| writer.write_all(text.as_bytes()))
     }
 }
