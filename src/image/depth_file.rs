@@ -35,7 +35,12 @@ impl DepthImage {
         let none = options.none.map(|none| file.as_stored(channel.id, none));
         let size = file.display();
         let mut values = Vec::new();
-        let too_large = |_| fail("more pixels than the system has memory for".to_owned());
+        let too_large = |_| {
+            fail(format!(
+                "{} MiB needed, more than the system grants",
+                size.pixels() >> 18
+            ))
+        };
         values.try_reserve_exact(size.pixels()).map_err(too_large)?;
         values.resize(size.pixels(), f32::INFINITY);
         plane.place(size, |pixel, value| {

@@ -2,7 +2,8 @@
 //! abort, or an allocation of what it claims. `ENERGYWAVE_FUZZ_SECONDS` goes on for so long, from another seed.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -38,7 +39,7 @@ fn seeds() -> impl Iterator<Item = u64> {
 fn change(random: &mut fastrand::Rng, bytes: &[u8]) -> Vec<u8> {
     let mut changed = bytes.to_vec();
     let at = |random: &mut fastrand::Rng| random.usize(..bytes.len());
-    match random.u32(..10) {
+    match random.u32(..11) {
         0 => changed.truncate(at(random)),
         1 => {
             let (begin, length) = (at(random), random.usize(1..40));
@@ -50,7 +51,14 @@ fn change(random: &mut fastrand::Rng, bytes: &[u8]) -> Vec<u8> {
             let piece = bytes[begin..(begin + length).min(bytes.len())].to_vec();
             changed.splice(begin..begin, piece);
         }
-        3 | 4 => {
+        3 => {
+            // Pixels that another compression packed.
+            let name = b"compression\0compression\0\x01\0\0\0";
+            let found = bytes.windows(name.len()).position(|part| part == name);
+            let place = found.map_or_else(|| at(random), |begin| begin + name.len());
+            changed[place] = random.u8(..12);
+        }
+        4 | 5 => {
             let number = match random.u32(..4) {
                 0 => random.u64(..),
                 1 => 1 << random.u32(..63),
@@ -86,11 +94,18 @@ fn change(random: &mut fastrand::Rng, bytes: &[u8]) -> Vec<u8> {
 fn a_damaged_image_ends_in_a_result_or_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("damaged.exr");
+    // Written over and never closed: some file systems wait for the disk where a file is cut and closed.
+    let mut file = File::create(&path).unwrap();
+    let mut put = |bytes: &[u8]| {
+        file.rewind().unwrap();
+        file.write_all(bytes).unwrap();
+        file.set_len(bytes.len() as u64).unwrap();
+    };
     let images = images();
     let (mut read, mut refused) = (0, 0);
     let mut caught = BTreeMap::new(); // panics of the decoder, with the first file
     let mut check = |bytes: &[u8], what: &dyn Fn() -> String| {
-        fs::write(&path, bytes).unwrap();
+        put(bytes);
         let (kind, message) = match DepthImage::open(&path, DepthAlong::Ray) {
             Ok(image) => {
                 assert_eq!(image.as_slice().len(), image.size().pixels());

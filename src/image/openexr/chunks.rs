@@ -34,7 +34,7 @@ pub(super) fn decode(file: &OpenExr, part: usize, channels: &[usize]) -> Outcome
         let mut values = Vec::new();
         values
             .try_reserve_exact(width * height)
-            .map_err(|_| too_large(bytes))?;
+            .map_err(|_| not_granted(bytes))?;
         values.resize(width * height, 0.0);
         planes.push(Plane {
             first: (
@@ -238,22 +238,16 @@ fn largest_chunk(header: &Header) -> usize {
 
 /// Checks that the memory is there: what the decoder takes and does not get ends the process.
 fn check_memory(bytes: usize) -> Outcome<()> {
-    let is_there = memory::available_bytes().is_none_or(|available| bytes as u64 <= available);
-    match is_there && Vec::<u8>::new().try_reserve_exact(bytes).is_ok() {
-        true => Ok(()),
-        false => Err(too_large(bytes)),
+    if let Some(available) = memory::available_bytes().filter(|most| bytes as u64 > *most) {
+        let (needed, available) = (bytes >> 20, available >> 20);
+        return Err(format!("{needed} MiB needed, {available} MiB available"));
     }
+    let reserved = Vec::<u8>::new().try_reserve_exact(bytes);
+    reserved.map_err(|_| not_granted(bytes))
 }
 
-fn too_large(bytes: usize) -> String {
-    match memory::available_bytes() {
-        Some(available) => format!(
-            "{} MiB needed, {} MiB available",
-            bytes >> 20,
-            available >> 20
-        ),
-        None => format!("{} MiB needed, more than the system grants", bytes >> 20),
-    }
+fn not_granted(bytes: usize) -> String {
+    format!("{} MiB needed, more than the system grants", bytes >> 20)
 }
 
 fn damaged(error: exr::error::Error) -> String {
