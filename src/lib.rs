@@ -54,6 +54,8 @@ pub mod image;
 pub mod internals;
 mod memory;
 mod opencl;
+#[cfg(feature = "files")]
+mod output;
 #[cfg(feature = "papers")]
 pub mod papers;
 pub mod reference;

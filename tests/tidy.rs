@@ -58,7 +58,8 @@ fn modules_named(text: &str) -> Vec<String> {
     named
 }
 
-/// What a module may look at: what lies below it. Errors, costs and the host's memory lie below everything.
+/// What a module may look at: what lies below it. Errors, costs, the host's memory and
+/// the files that are written lie below everything.
 const LAYERS: [(&str, &[&str]); 9] = [
     ("image", &[]),
     ("opencl", &[]),
@@ -77,10 +78,11 @@ const LAYERS: [(&str, &[&str]); 9] = [
         &["opencl", "scene", "reference", "wave", "render"],
     ),
 ];
-const BELOW_ALL: [&str; 8] = [
+const BELOW_ALL: [&str; 9] = [
     "error",
     "cost",
     "memory",
+    "output",
     "threads",
     "Error",
     "Result",

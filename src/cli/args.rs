@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use energywave::image::{DepthAlong, DepthImage, ImageSize};
+use energywave::image::{DepthAlong, DepthImage, DepthOptions, ImageSize};
 use energywave::scene::{Method, MethodKeys, Sampling, Scene};
 use energywave::{Error, RendererOptions};
 
@@ -34,16 +34,19 @@ pub enum Command {
 
 #[derive(Debug, Args)]
 pub struct RenderArguments {
-    /// Scene file, TOML or (.json) JSON
+    /// Scene file, TOML or (.json) JSON; - is standard input
     pub scene: PathBuf,
-    /// Image to write: .png (8-bit sRGB) or .exr (32-bit linear)
+    /// Image to write: .png (8-bit sRGB) or .exr (32-bit linear); - is standard output
     #[arg(short, long)]
     pub output: PathBuf,
+    /// Format of the image [default: by the ending of its name; png where that has none]
+    #[arg(long)]
+    pub format: Option<FormatName>,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
     pub device: DeviceArgument,
-    /// No progress bar
+    /// No progress bar, and of the depths only what is likely wrong
     #[arg(short, long)]
     pub quiet: bool,
 }
@@ -163,6 +166,21 @@ pub struct Overrides {
     /// What the depths of --depth are lengths of [default: ray]
     #[arg(long, value_name = "WAY", requires = "depth")]
     pub depth_along: Option<DepthAlongName>,
+    /// Exact name of the channel of --depth that holds the depths, such as ViewLayer.Depth.Z, or part.channel
+    /// [default: Z, else the one whose name says depth]
+    #[arg(long, value_name = "NAME", requires = "depth")]
+    pub depth_channel: Option<String>,
+    /// World units to a unit of --depth, such as 0.01 for centimetres in a scene in metres [default: 1]
+    #[arg(long, value_name = "FACTOR", value_parser = scale, allow_hyphen_values = true, requires = "depth")]
+    pub depth_scale: Option<f64>,
+    /// Value of --depth that means that nothing is there, such as 0, -1 or nan; infinity always does
+    #[arg(
+        long,
+        value_name = "VALUE",
+        allow_hyphen_values = true,
+        requires = "depth"
+    )]
+    pub depth_none: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -192,6 +210,14 @@ pub enum SamplingName {
     Pixels,
     /// At every pixel near cores, interpolated within the tolerance elsewhere
     Tiles,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum FormatName {
+    /// 8-bit sRGB, tone-mapped
+    Png,
+    /// 32-bit linear
+    Exr,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -270,11 +296,14 @@ impl Overrides {
 
     /// Opens the image of `--depth`, for an image of this size.
     fn open_depth(&self, file: &Path, image: ImageSize) -> Result<DepthImage, Error> {
-        let along = match self.depth_along {
+        let mut options = DepthOptions::from(match self.depth_along {
             Some(DepthAlongName::Axis) => DepthAlong::Axis,
             Some(DepthAlongName::Ray) | None => DepthAlong::Ray,
-        };
-        let depth = DepthImage::open(file, along)?;
+        });
+        options.channel.clone_from(&self.depth_channel);
+        options.scale = self.depth_scale.unwrap_or(options.scale);
+        options.none = self.depth_none;
+        let depth = DepthImage::open(file, options)?;
         let size = depth.size();
         if size != image {
             return Err(Error::input(
@@ -304,6 +333,13 @@ fn divisions(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(divisions @ 2..=65536) if divisions % 2 == 0 => Ok(divisions),
         _ => Err("Simpson's rule needs an even number from 2 to 65536".to_owned()),
+    }
+}
+
+fn scale(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(scale) if f64::is_finite(scale) && scale != 0.0 => Ok(scale),
+        _ => Err("a scale is a number but 0, such as 0.01".to_owned()),
     }
 }
 

@@ -13,7 +13,7 @@ use energywave::{Device, DeviceType, Error, Renderer, Scene};
 use serde::Serialize;
 
 use super::args::{BenchArguments, TableName};
-use super::{Outcome, choose_devices, note, print, print_json};
+use super::{Outcome, choose_devices, note, print, print_json, read_scene, tell_depths};
 
 /// A cell of a table.
 #[derive(Serialize)]
@@ -219,10 +219,14 @@ fn print_cell(cell: &Cell, is_first: bool) -> Outcome {
 }
 
 fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
-    let scene = Scene::from_file_with(path, |scene, keys| arguments.overrides.apply(scene, keys))?;
+    let scene = read_scene(path, |scene, keys| arguments.overrides.apply(scene, keys))?;
+    tell_depths(&scene, false);
     let (devices, mut renderer) = prepare(arguments)?;
     let speed = measure(&mut renderer, &scene, time(arguments))?;
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = match path.file_stem() {
+        Some(stem) if stem != "-" => stem.to_string_lossy(),
+        _ => "stdin".into(),
+    };
     save(arguments, &format!("{stem}.exr"), &speed, &scene)?;
     let cost = match (scene.integration.method, &devices[0]) {
         (Method::Exact { .. }, device) if device.device_type != DeviceType::Reference => {
@@ -262,6 +266,8 @@ fn prepare(arguments: &BenchArguments) -> Result<(Vec<Device>, Renderer), super:
     if let Some(folder) = &arguments.frames_out {
         std::fs::create_dir_all(folder)
             .map_err(|error| Error::output(folder, error.to_string()).caused_by(error))?;
+        // Known before the work; nothing is written yet.
+        ImageFile::create(folder.join("frame.exr"))?;
     }
     let devices = choose_devices(arguments.device.device.as_deref())?;
     let renderer = Renderer::on_devices(&devices, &arguments.device.options())?;

@@ -4,12 +4,12 @@ use std::time::Duration;
 
 use energywave::papers::{Accuracy, accuracies};
 use energywave::scene::Method;
-use energywave::{Device, Renderer, Scene};
+use energywave::{Device, Renderer};
 use serde::Serialize;
 
 use super::args::CompareArguments;
 use super::progress::{Progress, catch_interrupts};
-use super::{Outcome, choose_devices, note, print, print_json};
+use super::{Outcome, choose_devices, note, print, print_json, read_scene, tell_depths};
 
 #[derive(Serialize)]
 struct Row {
@@ -44,10 +44,11 @@ impl From<Accuracy> for Row {
 }
 
 pub fn run(arguments: &CompareArguments) -> Outcome {
-    let scene = Scene::from_file_with(&arguments.scene, |scene, _| {
+    let scene = read_scene(&arguments.scene, |scene, _| {
         scene.image = arguments.size.unwrap_or(scene.image);
         Ok(())
     })?;
+    tell_depths(&scene, arguments.quiet);
     let devices = choose_devices(arguments.device.device.as_deref())?;
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     catch_interrupts();

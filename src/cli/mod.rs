@@ -9,10 +9,12 @@ mod render;
 mod verify;
 
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
-use energywave::{Device, Devices, Error, ErrorKind};
+use energywave::scene::MethodKeys;
+use energywave::{Device, Devices, Error, ErrorKind, Scene};
 
 use args::{Arguments, Command};
 
@@ -36,6 +38,7 @@ type Outcome = Result<(), Failure>;
 
 /// Runs the program.
 pub fn run() -> ExitCode {
+    be_quiet_of_decoders();
     let arguments = Arguments::parse();
     let outcome = match arguments.command {
         Command::Render(arguments) => render::run(arguments),
@@ -59,6 +62,16 @@ pub fn run() -> ExitCode {
     // Nobody is left to tell if standard error is closed.
     let _ = writeln!(io::stderr(), "error: {message}");
     ExitCode::from(code)
+}
+
+/// Keeps the panics of decoders of damaged files, which are caught and end in an error, from standard error.
+fn be_quiet_of_decoders() {
+    let others = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if std::thread::current().name() != Some(energywave::image::DECODER_THREAD) {
+            others(panic);
+        }
+    }));
 }
 
 /// Returns the exit code of an error, one of those that `--help` lists.
@@ -99,6 +112,33 @@ fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
         }
     }
     Ok(chosen)
+}
+
+/// Reads a scene from a file, or from standard input if it is called `-`.
+fn read_scene(
+    path: &Path,
+    adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<(), Error>,
+) -> Result<Scene, Error> {
+    match path == Path::new("-") {
+        true => Scene::from_reader_with(io::stdin().lock(), "standard input", adjust),
+        false => Scene::from_file_with(path, adjust),
+    }
+}
+
+/// Says on standard error what the scene's depths come to; if `quiet`, only what is likely wrong with them.
+fn tell_depths(scene: &Scene, quiet: bool) {
+    let Some(report) = scene.depth_report() else {
+        return;
+    };
+    let file = scene.depth.as_ref().and_then(|depth| depth.file());
+    let name = file.and_then(|file| file.file_name()).unwrap_or_default();
+    let name = name.to_string_lossy();
+    if !quiet {
+        note(&format!("depth: {name}: {report}"));
+    }
+    for warning in &report.warnings {
+        note(&format!("warning: {name}: {warning}"));
+    }
 }
 
 /// Writes one line to standard error.

@@ -1,6 +1,7 @@
 //! Depth: how far each pixel's ray sees before something hides the light behind it (Abe, Watanabe 2010, eq. 13, 14).
 
-use std::path::{Path, PathBuf};
+#[cfg(feature = "files")]
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -27,7 +28,57 @@ pub struct DepthImage {
     size: ImageSize,
     along: DepthAlong,
     values: Arc<Vec<f32>>,
-    file: Option<Arc<PathBuf>>,
+    #[cfg(feature = "files")]
+    origin: Option<Arc<Origin>>,
+}
+
+/// How the depths of a file are read. Made of a [`DepthAlong`] it leaves all else at its default.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct DepthOptions {
+    /// What the depths are lengths of.
+    pub along: DepthAlong,
+    /// The channel that holds them, by its exact name; its part's may stand before it, as in `part.channel`. `None`:
+    /// the one called `Z`, else the one whose name, layer or part says depth, else the only one.
+    pub channel: Option<String>,
+    /// World units to a unit of the file: 0.01 for centimetres in a scene in metres. Negative where the file's depths
+    /// are, never 0.
+    pub scale: f64,
+    /// The value of the file that means that nothing is there, such as 0, -1 or NaN; infinity always does.
+    pub none: Option<f64>,
+}
+
+impl Default for DepthOptions {
+    fn default() -> Self {
+        Self {
+            along: DepthAlong::default(),
+            channel: None,
+            scale: 1.0,
+            none: None,
+        }
+    }
+}
+
+impl From<DepthAlong> for DepthOptions {
+    fn from(along: DepthAlong) -> Self {
+        Self {
+            along,
+            ..Self::default()
+        }
+    }
+}
+
+/// The file that a depth image was read from, and how.
+#[cfg(feature = "files")]
+#[derive(Debug)]
+pub(super) struct Origin {
+    /// The full path.
+    pub(super) file: PathBuf,
+    pub(super) options: DepthOptions,
+    /// The channel's name, with its part's.
+    pub(super) channel: String,
+    /// All channels, where the name of this one left a doubt.
+    pub(super) doubt: Option<String>,
 }
 
 /// Two images are equal if they hide the same, wherever they came from.
@@ -70,22 +121,21 @@ impl DepthImage {
             size,
             along,
             values: Arc::new(values),
-            file: None,
+            #[cfg(feature = "files")]
+            origin: None,
         })
     }
 
-    /// Remembers the file that the image came from or went to, by its full path.
+    /// Remembers what the image was read from.
     #[cfg(feature = "files")]
-    pub(super) fn in_file(mut self, path: &Path) -> Self {
-        self.file = std::path::absolute(path).ok().map(Arc::new);
+    pub(super) fn read_from(mut self, origin: Origin) -> Self {
+        self.origin = Some(Arc::new(origin));
         self
     }
 
-    /// Returns the file that the image was read from, by its full path; `None` for one that was made in code. A scene
-    /// that is written to a file names it.
-    #[must_use]
-    pub fn file(&self) -> Option<&Path> {
-        self.file.as_deref().map(PathBuf::as_path)
+    #[cfg(feature = "files")]
+    pub(super) fn origin(&self) -> Option<&Origin> {
+        self.origin.as_deref()
     }
 
     /// Returns width and height in pixels.

@@ -3,60 +3,89 @@
 use std::path::Path;
 
 use exr::image::{AnyChannel, FlatSamples, Layer};
-use exr::math::Vec2;
-use exr::meta::MetaData;
-use exr::prelude::{
-    AnyChannels, Encoding, Image, LayerAttributes, ReadChannels, ReadLayers, WritableImage, read,
-};
+use exr::prelude::{AnyChannels, Encoding, Image, LayerAttributes, WritableImage};
 
-use super::{DepthAlong, DepthImage, ImageFile, ImageFormat, ImageSize};
+use super::depth::Origin;
+use super::depth_channel::{Choice, choose, escaped, listed, named};
+use super::openexr::{ChannelId, ChannelName, OpenExr, Plane};
+use super::{DepthImage, DepthOptions, ImageFormat};
 use crate::error::{Error, Result};
-use crate::memory;
+use crate::output::Output;
 
 impl DepthImage {
-    /// Reads an OpenEXR image: its channel Z or depth, else V, Y or R, or the only one there is. Where the data window
-    /// leaves a part of the display window out, nothing hides the light.
+    /// Reads an OpenEXR image. Where the data window leaves a part of the display window out, nothing hides the light.
+    ///
+    /// Without a name in `options` the channel is the one called `Z`, else the one whose name, layer or part says
+    /// depth, else R, V or Y if it is alone, else red where red, green and blue are equal everywhere. The Z of a layer
+    /// of X, Y and Z is none.
     ///
     /// # Errors
-    /// [`Error::Input`] if the file cannot be read, has no such channel, or holds what [`DepthImage::new`] refuses.
-    pub fn open(path: impl AsRef<Path>, along: DepthAlong) -> Result<Self> {
-        let path = path.as_ref();
+    /// [`Error::Input`] if the file cannot be read, leaves the channel in doubt (then all are listed), or holds what
+    /// [`DepthImage::new`] refuses.
+    pub fn open(path: impl AsRef<Path>, options: impl Into<DepthOptions>) -> Result<Self> {
+        let (path, options) = (path.as_ref(), options.into());
         let fail = |reason: String| Error::input(path, reason);
-        let faulty = |error| match error {
-            exr::error::Error::Io(error) => fail(format!("cannot read: {error}")).caused_by(error),
-            other => fail(format!("not an OpenEXR image: {other}")).caused_by(other),
-        };
-        let meta = MetaData::read_from_file(path, false).map_err(faulty)?;
-        check_claims(&meta).map_err(fail)?;
-        let image = read()
-            .no_deep_data()
-            .largest_resolution_level()
-            .all_channels()
-            .all_layers()
-            .all_attributes()
-            .non_parallel()
-            .from_file(path)
-            .map_err(faulty)?;
-        let (layer, channel) = depth_channel(&image.layer_data).map_err(fail)?;
-        let shown = image.attributes.display_window;
-        let size = ImageSize {
-            width: shown.size.0 as u32,
-            height: shown.size.1 as u32,
-        };
-        let first = layer.attributes.layer_position - shown.position;
-        let mut values = vec![f32::INFINITY; size.pixels()];
-        for (index, depth) in channel.sample_data.values_as_f32().enumerate() {
-            let column = first.0 + (index % layer.size.0) as i32;
-            let row = first.1 + (index / layer.size.0) as i32;
-            if (0..size.width as i32).contains(&column) && (0..size.height as i32).contains(&row) {
-                values[row as usize * shown.size.0 + column as usize] = depth;
-            }
+        if !options.scale.is_finite() || options.scale == 0.0 {
+            let reason = format!("scale {}: it must be a number but 0", options.scale);
+            return Err(fail(reason));
         }
-        match Self::new(size, along, values) {
-            Ok(image) => Ok(image.in_file(path)),
-            Err(Error::Scene(fault)) => Err(fail(fault.message)),
+        let file = OpenExr::open(path)?;
+        let all = file.channels();
+        let (channel, plane, is_guess) = find(&file, &all, &options).map_err(fail)?;
+        let none = options.none.map(|none| file.as_stored(channel.id, none));
+        let size = file.display();
+        let mut values = Vec::new();
+        let too_large = |_| {
+            fail(format!(
+                "{} MiB needed, more than the system grants",
+                size.pixels() >> 18
+            ))
+        };
+        values.try_reserve_exact(size.pixels()).map_err(too_large)?;
+        values.resize(size.pixels(), f32::INFINITY);
+        plane.place(size, |pixel, value| {
+            let is_none =
+                none.is_some_and(|none| value == none || (value.is_nan() && none.is_nan()));
+            if !is_none && value != f32::INFINITY {
+                values[pixel] = (f64::from(value) * options.scale) as f32;
+            }
+        });
+        let origin = Origin {
+            file: std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
+            channel: channel.full(),
+            doubt: is_guess.then(|| listed(&all)),
+            options,
+        };
+        match Self::new(size, origin.options.along, values) {
+            Ok(image) => Ok(image.read_from(origin)),
+            Err(Error::Scene(fault)) => Err(fail(refused(&fault.message, &origin, &plane))),
             Err(other) => Err(other),
         }
+    }
+
+    /// Returns the file that the image was read from, by its full path; `None` for one that was made in code. A scene
+    /// that is written to a file names it.
+    #[must_use]
+    pub fn file(&self) -> Option<&Path> {
+        self.origin().map(|origin| origin.file.as_path())
+    }
+
+    /// Returns how the file was read; `None` for an image that was made in code.
+    #[must_use]
+    pub fn options(&self) -> Option<&DepthOptions> {
+        self.origin().map(|origin| &origin.options)
+    }
+
+    /// Returns the name of the file's channel, with its part's before it where there are several; `None` for an image
+    /// that was made in code.
+    #[must_use]
+    pub fn channel(&self) -> Option<&str> {
+        self.origin().map(|origin| origin.channel.as_str())
+    }
+
+    /// Returns all channels of the file, as a list, where the name of the one that was read left a doubt.
+    pub(crate) fn doubt(&self) -> Option<&str> {
+        self.origin().and_then(|origin| origin.doubt.as_deref())
     }
 
     /// Writes an OpenEXR image whose channel Z holds the depths.
@@ -76,9 +105,9 @@ impl DepthImage {
             AnyChannels::sort([channel].into_iter().collect()),
         );
         let image = Image::from_layer(layer);
-        ImageFile::create(path)?.write_with(|file| {
+        Output::create(path)?.write_with(|writer| {
             let write = image.write().non_parallel();
-            write.to_buffered(file).map_err(|error| match error {
+            write.to_buffered(writer).map_err(|error| match error {
                 exr::error::Error::Io(error) => error,
                 other => std::io::Error::other(other),
             })
@@ -86,78 +115,67 @@ impl DepthImage {
     }
 }
 
-/// Checks the sizes that a file claims: nothing is allocated beyond what an image may have or the memory holds.
-fn check_claims(meta: &MetaData) -> std::result::Result<(), String> {
-    const LIMIT: usize = ImageSize::LIMIT as usize;
-    let mut bytes = 0;
-    for header in &meta.headers {
-        for window in [
-            header.layer_size,
-            header.shared_attributes.display_window.size,
-        ] {
-            if window.0.max(window.1) > LIMIT {
-                return Err(format!(
-                    "{}x{} pixels; an image is at most {LIMIT}x{LIMIT}",
-                    window.0, window.1
-                ));
+/// Finds and decodes the channel; says whether its name left a doubt.
+fn find<'a>(
+    file: &OpenExr,
+    all: &'a [ChannelName],
+    options: &DepthOptions,
+) -> std::result::Result<(&'a ChannelName, Plane, bool), String> {
+    let one = |id: ChannelId| {
+        let plane = file.planes(&[id])?.pop();
+        plane.ok_or_else(|| "it has no pixels".to_owned())
+    };
+    let choice = match &options.channel {
+        Some(name) => Choice::Sure(named(all, name)?),
+        None => choose(all)?,
+    };
+    match choice {
+        Choice::Sure(channel) => Ok((channel, one(channel.id)?, false)),
+        Choice::Guess(channel) => Ok((channel, one(channel.id)?, true)),
+        Choice::IfEqual(rgb) => {
+            let mut planes = file.planes(&rgb.map(|channel| channel.id))?;
+            let [red, green, blue] = planes.as_slice() else {
+                return Err("it has no pixels".to_owned());
+            };
+            let is_equal = |(a, b): (&f32, &f32)| a == b || (a.is_nan() && b.is_nan());
+            let others = [green, blue];
+            if others
+                .iter()
+                .all(|other| red.values.iter().zip(&other.values).all(is_equal))
+            {
+                return Ok((rgb[0], planes.swap_remove(0), true));
             }
-        }
-        if header
-            .channels
-            .list
-            .iter()
-            .any(|c| c.sampling != Vec2(1, 1))
-        {
-            return Err("a channel has not one sample for each pixel".to_owned());
-        }
-        bytes += header.layer_size.area() * header.channels.bytes_per_pixel;
-    }
-    match memory::available_bytes() {
-        Some(available) if bytes as u64 > available => Err(format!(
-            "{} MiB needed, {} MiB available",
-            bytes >> 20,
-            available >> 20
-        )),
-        _ => Ok(()),
-    }
-}
-
-type FlatLayer = Layer<AnyChannels<FlatSamples>>;
-
-/// Finds the channel that holds depth, with its layer.
-fn depth_channel(
-    layers: &[FlatLayer],
-) -> std::result::Result<(&FlatLayer, &AnyChannel<FlatSamples>), String> {
-    let of_layer = |layer| {
-        let FlatLayer { channel_data, .. }: &FlatLayer = layer;
-        channel_data
-            .list
-            .iter()
-            .map(move |channel| (layer, channel))
-    };
-    let all: Vec<_> = layers.iter().flat_map(of_layer).collect();
-    // Renderers put the name of a view layer or a pass before a channel's own.
-    let is_named = |channel: &AnyChannel<FlatSamples>, wanted: &str| {
-        let full = channel.name.to_string().to_lowercase();
-        full.rsplit('.').next() == Some(wanted)
-    };
-    let wanted = ["z", "depth", "v", "y", "r"].iter();
-    let named = wanted.flat_map(|wanted| all.iter().find(|(_, c)| is_named(c, wanted)));
-    match (named.into_iter().next(), all.as_slice()) {
-        (Some(found), _) | (None, [found]) => Ok(*found),
-        _ => {
-            let names: Vec<String> = all.iter().map(|(_, c)| c.name.to_string()).collect();
             Err(format!(
-                "no channel named Z, depth, V, Y or R; there are: {}",
-                names.join(", ")
+                "red, green and blue differ, so none is depth: name the right channel as the depth's `channel`; {}",
+                listed(all)
             ))
         }
     }
 }
 
+/// Says which channel holds what is no depth, and how to say what it means.
+fn refused(fault: &str, origin: &Origin, plane: &Plane) -> String {
+    let has_nan = plane.values.iter().any(|value| value.is_nan());
+    let finite = || plane.values.iter().filter(|value| value.is_finite());
+    let negative = finite().filter(|value| **value < 0.0).count();
+    let lowest = finite().fold(f32::INFINITY, |low, value| low.min(*value));
+    let advice = match (has_nan, negative) {
+        (true, _) => "if NaN means that nothing is there, give `none = nan`".to_owned(),
+        (false, negative) if 2 * negative > finite().count() => {
+            "if the depths are negative because they lie before the camera, give `scale = -1`; if they are another \
+             pass, name the right channel as `channel`"
+                .to_owned()
+        }
+        _ => format!("if {lowest} means that nothing is there, give `none = {lowest}`"),
+    };
+    format!("channel {}: {fault}; {advice}", escaped(&origin.channel))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::image::{DepthAlong, ImageSize};
+    use exr::math::Vec2;
     use exr::prelude::SmallVec;
 
     const SIZE: ImageSize = ImageSize {
@@ -179,26 +197,75 @@ mod tests {
     }
 
     #[test]
-    fn the_channel_of_depth_is_found_by_its_name() {
+    fn the_channel_is_the_one_that_is_named_or_says_depth() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("depth.exr");
-        let opened = |channels: &[(&str, f32)]| {
+        let opened = |channels: &[(&str, f32)], options: &DepthOptions| {
             write(&path, channels);
-            DepthImage::open(&path, DepthAlong::Axis).map(|image| image.as_slice()[5])
+            DepthImage::open(&path, options.clone())
+                .map(|image| (image.as_slice()[5], image.channel().unwrap().to_owned()))
+                .map_err(|error| error.to_string())
         };
+        let found = |value: f32, channel: &str| Ok((value, channel.to_owned()));
+        let plain = DepthOptions::default();
         let color = [("R", 1.0), ("G", 2.0), ("B", 3.0)];
-        assert_eq!(opened(&color).unwrap(), 1.0);
-        assert_eq!(opened(&[&color[..], &[("Z", 4.0)]].concat()).unwrap(), 4.0);
+        let with_z = [&color[..], &[("Z", 4.0)]].concat();
+        assert_eq!(opened(&with_z, &plain), found(4.0, "Z"));
         let pass = [("Main.Combined.R", 1.0), ("Main.Depth.Z", 5.0)];
-        assert_eq!(opened(&pass).unwrap(), 5.0);
-        assert_eq!(opened(&[("distance", 6.0)]).unwrap(), 6.0);
-        let unknown = opened(&[("a", 6.0), ("b", 7.0)]).unwrap_err().to_string();
-        assert!(unknown.contains("there are: a, b"), "{unknown}");
-        let not_a_number = opened(&[("Z", f32::NAN)]).unwrap_err().to_string();
-        assert!(
-            not_a_number.contains("NaN at column 0, row 0"),
-            "{not_a_number}"
-        );
+        assert_eq!(opened(&pass, &plain), found(5.0, "Main.Depth.Z"));
+        assert_eq!(opened(&[("distance", 6.0)], &plain), found(6.0, "distance"));
+        let grey = [("R", 7.0), ("G", 7.0), ("B", 7.0)];
+        assert_eq!(opened(&grey, &plain), found(7.0, "R"));
+        let differs = opened(&color, &plain).unwrap_err();
+        assert!(differs.contains("red, green and blue differ"), "{differs}");
+        assert!(differs.contains("channels: B, G, R"), "{differs}");
+        let unknown = opened(&[("a", 6.0), ("b", 7.0)], &plain).unwrap_err();
+        assert!(unknown.contains("channels: a, b"), "{unknown}");
+        let mut green = plain.clone();
+        green.channel = Some("G".to_owned());
+        assert_eq!(opened(&with_z, &green), found(2.0, "G"));
+        let missing = opened(&[("Z", 6.0)], &green).unwrap_err();
+        assert!(missing.contains("no channel `G`; channels: Z"), "{missing}");
+    }
+
+    #[test]
+    fn values_are_scaled_and_what_means_nothing_is_infinite() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("depth.exr");
+        let opened = |value: f32, scale: f64, none: Option<f64>| {
+            write(&path, &[("Z", value)]);
+            let mut options = DepthOptions::from(DepthAlong::Axis);
+            (options.scale, options.none) = (scale, none);
+            DepthImage::open(&path, options)
+                .map(|image| image.as_slice()[0])
+                .map_err(|error| error.to_string())
+        };
+        assert_eq!(opened(250.0, 0.01, None), Ok(2.5));
+        assert_eq!(opened(-3.0, -1.0, None), Ok(3.0));
+        for none in [0.0, -1.0, f64::NAN, 1e10] {
+            assert_eq!(
+                opened(none as f32, 0.5, Some(none)),
+                Ok(f32::INFINITY),
+                "{none}"
+            );
+            assert_eq!(opened(7.0, 0.5, Some(none)), Ok(3.5), "{none}");
+        }
+        assert_eq!(opened(f32::INFINITY, -1.0, None), Ok(f32::INFINITY));
+        for (value, words) in [
+            (f32::NAN, "channel Z: NaN at column 0, row 0"),
+            (f32::NAN, "`none = nan`"),
+            (-3.0, "channel Z: -3 at column 0, row 0"),
+            (-3.0, "`scale = -1`"),
+        ] {
+            let refused = opened(value, 1.0, None).unwrap_err();
+            assert!(refused.contains(words), "{refused}");
+        }
+        for scale in [0.0, f64::NAN, f64::INFINITY] {
+            assert!(
+                opened(1.0, scale, None).unwrap_err().contains("scale"),
+                "{scale}"
+            );
+        }
     }
 
     #[test]

@@ -1,17 +1,16 @@
-//! Image files: EXR (float32, linear) and PNG (8-bit sRGB), written beside the target and renamed, so that no
-//! half-written file is ever left.
+//! Image files: EXR (float32, linear) and PNG (8-bit sRGB).
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 
 use image::codecs::openexr::OpenExrEncoder;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
-use tempfile::NamedTempFile;
 
-use super::{Display, DisplayImage, ImageSize, RadianceImage};
+use super::openexr::OpenExr;
+use super::{Display, DisplayImage, RadianceImage};
 use crate::error::{Error, Result};
+use crate::output::{Output, Sink, is_stream};
 
 /// A file format, chosen by the ending of a file's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +23,7 @@ pub enum ImageFormat {
 }
 
 impl ImageFormat {
-    /// Chooses the format by the ending of a file's name.
+    /// Chooses the format by the ending of a file's name; PNG for a pipe or a device without a known one.
     ///
     /// # Errors
     /// [`Error::OutputFormat`] for any other ending.
@@ -33,6 +32,7 @@ impl ImageFormat {
         match ending.to_str() {
             Some("exr") => Ok(Self::Exr),
             Some("png") => Ok(Self::Png),
+            _ if is_stream(path) => Ok(Self::Png),
             _ => Err(Error::OutputFormat(path.to_owned())),
         }
     }
@@ -41,92 +41,59 @@ impl ImageFormat {
 /// An output that is known to be writable before anything is computed.
 #[derive(Debug)]
 pub struct ImageFile {
-    path: PathBuf,
     format: ImageFormat,
-    file: NamedTempFile,
+    output: Output,
 }
 
 impl ImageFile {
-    /// Opens a temporary file beside `path`, through a symbolic link beside what it points to. It vanishes unless
-    /// [`ImageFile::write`] succeeds.
+    /// Makes sure that `path` can be written, through symbolic links, and changes nothing yet. The format is that of
+    /// [`ImageFormat::of`]. A pipe is waited for until somebody reads it.
     ///
     /// # Errors
-    /// [`Error::OutputFormat`] for an unknown ending, [`Error::Output`] if the folder is missing or not writable.
+    /// [`Error::OutputFormat`] for an unknown ending, [`Error::Output`] if the folder is missing or not writable, or
+    /// the file that is there cannot be changed.
     pub fn create(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let format = ImageFormat::of(path)?;
-        let fail = |reason: String| Error::output(path, reason);
-        let names_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
-        if path.is_dir() || names_folder {
-            return Err(fail("it is a folder".to_owned()));
-        }
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let folder = match target.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        if !folder.is_dir() {
-            return Err(fail(format!(
-                "there is no folder {}; create it first",
-                folder.display()
-            )));
-        }
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".energywave-").suffix(".tmp");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(std::fs::Permissions::from_mode(0o666)); // less the user's umask
-        }
-        let file = builder.tempfile_in(folder).map_err(|error| {
-            fail(format!("folder {}: {}", folder.display(), error.kind())).caused_by(error)
-        })?;
-        Ok(Self {
-            path: target,
-            format,
-            file,
-        })
+        Self::create_as(path, ImageFormat::of(path)?)
     }
 
-    /// Encodes the image, tone-mapped if the format is for screens, and moves the file to its place.
+    /// Like [`ImageFile::create`], in a format that does not depend on the ending.
     ///
     /// # Errors
-    /// [`Error::Output`] if the disk is full or the file cannot be moved; nothing is left behind then.
+    /// [`Error::Output`] as there.
+    pub fn create_as(path: impl AsRef<Path>, format: ImageFormat) -> Result<Self> {
+        let output = Output::create(path.as_ref())?;
+        Ok(Self { format, output })
+    }
+
+    /// Writes to standard output.
+    #[must_use]
+    pub fn stdout(format: ImageFormat) -> Self {
+        let output = Output::stdout();
+        Self { format, output }
+    }
+
+    /// Encodes the image, tone-mapped if the format is for screens, and puts the file in its place. A file that is
+    /// there keeps its mode and its owner.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if the disk is full or nobody reads the pipe; nothing is left behind then.
     pub fn write(self, image: &RadianceImage, display: &Display) -> Result<()> {
         match self.format {
-            ImageFormat::Exr => self.finish(|writer| encode_exr(image, writer)),
+            ImageFormat::Exr => encoded(self.output, |writer| encode_exr(image, writer)),
             ImageFormat::Png => {
                 let picture = image.tone_map(display);
-                self.finish(|writer| encode_png(&picture, writer))
+                encoded(self.output, |writer| encode_png(&picture, writer))
             }
         }
     }
+}
 
-    fn finish(
-        self,
-        encode: impl FnOnce(&mut BufWriter<&mut File>) -> std::result::Result<(), ImageError>,
-    ) -> Result<()> {
-        self.write_with(|writer| encode(writer).map_err(|error| io::Error::other(reason(&error))))
-    }
-
-    /// Lets `encode` write the file and moves it to its place.
-    pub(super) fn write_with(
-        mut self,
-        encode: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
-    ) -> Result<()> {
-        let path = self.path;
-        let fail = |error: io::Error| {
-            Error::output(&path, format!("{error}; nothing was written")).caused_by(error)
-        };
-        let mut writer = BufWriter::new(self.file.as_file_mut());
-        encode(&mut writer).map_err(fail)?;
-        writer.flush().map_err(fail)?;
-        drop(writer);
-        self.file
-            .persist(&path)
-            .map_err(|error| fail(error.error))?;
-        Ok(())
-    }
+fn encoded(
+    output: Output,
+    encode: impl FnOnce(&mut dyn Sink) -> std::result::Result<(), ImageError>,
+) -> Result<()> {
+    output.write_with(|writer| encode(writer).map_err(|error| io::Error::other(reason(&error))))
 }
 
 /// Returns the system's own words, which the user can act on; encoders wrap them in words about images.
@@ -143,10 +110,7 @@ fn reason(error: &ImageError) -> String {
     }
 }
 
-fn encode_exr(
-    image: &RadianceImage,
-    writer: &mut BufWriter<&mut File>,
-) -> std::result::Result<(), ImageError> {
+fn encode_exr(image: &RadianceImage, writer: &mut dyn Sink) -> std::result::Result<(), ImageError> {
     let size = image.size();
     let bytes = bytemuck::cast_slice(image.as_slice());
     OpenExrEncoder::new(writer).write_image(
@@ -159,7 +123,7 @@ fn encode_exr(
 
 fn encode_png(
     picture: &DisplayImage,
-    writer: &mut BufWriter<&mut File>,
+    writer: &mut dyn Sink,
 ) -> std::result::Result<(), ImageError> {
     let size = picture.size();
     PngEncoder::new(writer).write_image(
@@ -179,24 +143,31 @@ impl RadianceImage {
         ImageFile::create(path)?.write(self, display)
     }
 
-    /// Reads the colour of a linear `.exr`.
+    /// Reads the colour of a linear `.exr`: its channels R, G and B, and A, which is 1 where there is none.
     ///
     /// # Errors
-    /// [`Error::Input`] if the file cannot be read or is no EXR image.
+    /// [`Error::Input`] if the file cannot be read, is no OpenEXR image, or has not these channels.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let fail = |error: ImageError| Error::input(path, reason(&error)).caused_by(error);
-        let reader =
-            image::ImageReader::open(path).map_err(|error| fail(ImageError::IoError(error)))?;
-        let pixels = reader.decode().map_err(fail)?.into_rgba32f();
-        let size = ImageSize {
-            width: pixels.width(),
-            height: pixels.height(),
+        let fail = |reason: String| Error::input(path, reason);
+        let file = OpenExr::open(path)?;
+        let all = file.channels();
+        let of = |name: &str| all.iter().find(|channel| channel.name == name);
+        let (Some(red), Some(green), Some(blue)) = (of("R"), of("G"), of("B")) else {
+            return Err(fail("it has no channels R, G and B".to_owned()));
         };
-        Ok(Self {
-            size,
-            data: pixels.into_raw(),
-        })
+        let mut ids = vec![red.id, green.id, blue.id];
+        ids.extend(of("A").map(|alpha| alpha.id));
+        let planes = file.planes(&ids).map_err(fail)?;
+        let mut image = Self::new(file.display())?;
+        let mut opaque = image.data.iter_mut().skip(3).step_by(4);
+        opaque.by_ref().for_each(|alpha| *alpha = 1.0);
+        for (channel, plane) in planes.iter().enumerate() {
+            plane.place(file.display(), |pixel, value| {
+                image.data[4 * pixel + channel] = value;
+            });
+        }
+        Ok(image)
     }
 }
 
@@ -211,6 +182,6 @@ impl DisplayImage {
         if output.format != ImageFormat::Png {
             return Err(Error::OutputFormat(path.to_owned()));
         }
-        output.finish(|writer| encode_png(self, writer))
+        encoded(output.output, |writer| encode_png(self, writer))
     }
 }

@@ -3,16 +3,22 @@
 mod compare;
 mod depth;
 #[cfg(feature = "files")]
+mod depth_channel;
+#[cfg(feature = "files")]
 mod depth_file;
 #[cfg(feature = "files")]
 mod file;
+#[cfg(feature = "files")]
+mod openexr;
 mod size;
 mod tone_map;
 
 pub use compare::{Difference, compare};
-pub use depth::{DepthAlong, DepthImage};
+pub use depth::{DepthAlong, DepthImage, DepthOptions};
 #[cfg(feature = "files")]
 pub use file::{ImageFile, ImageFormat};
+#[cfg(feature = "files")]
+pub use openexr::DECODER_THREAD;
 pub use size::ImageSize;
 pub use tone_map::{Display, ToneMap};
 

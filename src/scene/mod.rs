@@ -6,6 +6,8 @@
 
 mod camera;
 #[cfg(feature = "files")]
+mod depth_report;
+#[cfg(feature = "files")]
 mod file;
 mod integration;
 pub(crate) mod kinds;
@@ -19,6 +21,8 @@ mod values;
 use glam::DVec3;
 
 pub use camera::Camera;
+#[cfg(feature = "files")]
+pub use depth_report::DepthReport;
 #[cfg(feature = "files")]
 pub use file::MethodKeys;
 pub use integration::{CORE_FLOOR, Decay, Integration, Measure, Method, Sampling};

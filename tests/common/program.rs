@@ -1,7 +1,8 @@
 //! Runs the program as a user would.
 
+use std::io::Read;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output};
 use std::sync::LazyLock;
 
 pub const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/figure-07.toml");
@@ -53,6 +54,17 @@ impl Folder {
         entries
             .map(|e| e.unwrap().file_name().into_string().unwrap())
             .collect()
+    }
+}
+
+/// Waits until the program names its device: then it catches Ctrl-C, and the work begins.
+pub fn wait_for_the_device(child: &mut Child) {
+    let mut line = String::new();
+    let mut byte = [0];
+    let errors = child.stderr.as_mut().unwrap();
+    while !line.contains("device: ") {
+        assert_eq!(errors.read(&mut byte).unwrap(), 1, "it ended first: {line}");
+        line.push(char::from(byte[0]));
     }
 }
 

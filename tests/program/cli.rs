@@ -3,7 +3,7 @@
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::program::{Folder, PROGRAM, SCENE, device, expect, stderr};
+use crate::common::program::{Folder, PROGRAM, SCENE, device, expect, stderr, wait_for_the_device};
 use energywave::RadianceImage;
 
 #[test]
@@ -170,8 +170,11 @@ fn depths_hide_light_or_are_refused_before_anything_is_written() {
 
     let before = folder.names().len();
     for (file, words) in [
-        ("nan.exr", "nan.exr: NaN at column 0, row 0"),
-        ("negative.exr", "negative.exr: -1 at column 0, row 0"),
+        ("nan.exr", "nan.exr: channel R: NaN at column 0, row 0"),
+        (
+            "negative.exr",
+            "negative.exr: channel R: -1 at column 0, row 0",
+        ),
         ("text.exr", "text.exr: not an OpenEXR image"),
         ("nowhere.exr", "nowhere.exr: cannot read"),
     ] {
@@ -270,7 +273,7 @@ fn ctrl_c_exits_with_130_and_leaves_nothing() {
 /// Presses Ctrl-C in the middle of minutes of work.
 fn interrupt_on(device: &str) {
     let folder = Folder::new();
-    let child = folder
+    let mut child = folder
         .command()
         .args([
             "render",
@@ -287,15 +290,7 @@ fn interrupt_on(device: &str) {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let begun = Instant::now();
-    // The temporary file beside the target says that the work has begun.
-    while folder.names().is_empty() {
-        assert!(
-            begun.elapsed() < Duration::from_secs(20),
-            "the work never began"
-        );
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    wait_for_the_device(&mut child);
     let interrupt = format!("kill -INT {}", child.id()); // the shell's own: minimal systems have no other
     assert!(
         Command::new("sh")

@@ -8,7 +8,12 @@ mod bad_scenes; // has every fault of a scene file named with its place
 mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
 #[cfg(unix)] // shells, signals and the loader's environment variables
 mod cli; // runs the program: exit codes, messages and outputs
+mod damaged; // changes bytes of images and scenes
+#[cfg(unix)] // as cli
+mod depths; // reads depth images of other programs
 mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
+#[cfg(unix)] // as cli
+mod outputs; // writes to links, pipes and devices, and reads scenes from pipes
 mod scene_files; // reads again what was written
 mod verify; // checks known rays, past sources and past whole scenes

@@ -1,8 +1,10 @@
 //! Reads a scene from TOML or JSON; every fault is reported with file, line, column and key.
 
+mod depth;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
+mod piped;
 mod write;
 
 use std::path::{Path, PathBuf};
@@ -14,7 +16,7 @@ use super::kinds::for_each_kind;
 use super::values::{Fault, unnamed};
 use super::*;
 use crate::error::{Error, Result, SceneError};
-use crate::image::DepthAlong;
+use depth::DepthTable;
 use locate::{KeyMap, line_and_column};
 
 /// Changes a scene between its reading and its check.
@@ -73,16 +75,6 @@ for_each_kind!(define_scene_file);
 
 fn is_empty<T>(list: &List<T>) -> bool {
     list.len() == 0
-}
-
-/// A depth image in a file of its own.
-#[derive(Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct DepthTable {
-    /// From the folder of the scene.
-    file: PathBuf,
-    #[serde(default)]
-    along: DepthAlong,
 }
 
 /// `[integration]`: keys of both methods may stand there, whichever is chosen.
@@ -207,9 +199,7 @@ impl SceneFile {
         scene.check()?;
         adjust(&mut scene, &self.integration.keys())?;
         if let (Some(depth), None) = (&self.depth, &scene.depth) {
-            let image = DepthImage::open(folder.join(&depth.file), depth.along)
-                .map_err(|error| SceneError::value("depth.file", error.to_string()))?;
-            scene.depth = Some(image);
+            scene.depth = Some(depth.open(folder)?);
         }
         scene.check()?;
         Ok(scene)
@@ -236,13 +226,15 @@ impl Scene {
         mut adjust: impl FnMut(&mut Self, &MethodKeys) -> Result<()>,
     ) -> Result<Self> {
         let path = path.as_ref();
-        let text = read_text(path)?;
+        let bytes = std::fs::read(path).map_err(|error| {
+            Error::input(path, format!("cannot read: {error}")).caused_by(error)
+        })?;
+        if piped::is_piped(path) {
+            return piped::read(path, bytes, &mut adjust);
+        }
+        let text = text_of(path, bytes)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let scene = match is_json(path) {
-            true => json::read(&text, folder, &mut adjust),
-            false => from_toml(&text, folder, &mut adjust),
-        };
-        scene.map_err(|error| name_file(error, path))
+        read_as(is_json(path), path, &text, folder, &mut adjust)
     }
 
     /// Reads and validates a scene in TOML; a depth image's path is from the working folder.
@@ -284,10 +276,22 @@ fn from_toml(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
         })
 }
 
-fn read_text(path: &Path) -> Result<String> {
+fn read_as(
+    is_json: bool,
+    name: &Path,
+    text: &str,
+    folder: &Path,
+    adjust: Adjust<'_>,
+) -> Result<Scene> {
+    let scene = match is_json {
+        true => json::read(text, folder, adjust),
+        false => from_toml(text, folder, adjust),
+    };
+    scene.map_err(|error| name_file(error, name))
+}
+
+fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String> {
     let fail = |reason: String| Error::input(path, reason);
-    let bytes = std::fs::read(path)
-        .map_err(|error| fail(format!("cannot read: {error}")).caused_by(error))?;
     let no_text = match String::from_utf8(bytes) {
         Ok(text) => match text.find('\0') {
             None => return Ok(text),

@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::{DepthTable, SceneFile};
 use crate::error::{Error, Result};
+use crate::output::Output;
 use crate::scene::Scene;
 
 /// Why a scene cannot be written.
@@ -17,13 +18,9 @@ impl Serialize for Scene {
     fn serialize<S: Serializer>(&self, writer: S) -> std::result::Result<S::Ok, S::Error> {
         let depth = match &self.depth {
             None => None,
-            Some(depth) => Some(DepthTable {
-                file: depth
-                    .file()
-                    .ok_or_else(|| serde::ser::Error::custom(NO_FILE))?
-                    .to_owned(),
-                along: depth.along(),
-            }),
+            Some(depth) => {
+                Some(DepthTable::of(depth).ok_or_else(|| serde::ser::Error::custom(NO_FILE))?)
+            }
         };
         SceneFile::of(self, depth).serialize(writer)
     }
@@ -57,7 +54,6 @@ impl Scene {
             true => super::json::write(self)?,
             false => self.to_toml()?,
         };
-        std::fs::write(path, text)
-            .map_err(|error| Error::output(path, error.to_string()).caused_by(error))
+        Output::create(path)?.write_with(|writer| writer.write_all(text.as_bytes()))
     }
 }

@@ -1,0 +1,100 @@
+//! `[depth]`: a depth image in a file of its own, and how it is read.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::error::SceneError;
+use crate::image::{DepthAlong, DepthImage, DepthOptions};
+use crate::scene::values::{Fault, finite};
+
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DepthTable {
+    /// From the folder of the scene.
+    file: PathBuf,
+    #[serde(default)]
+    along: DepthAlong,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    channel: Option<String>,
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    scale: f64,
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "read_none",
+        serialize_with = "write_none"
+    )]
+    none: Option<f64>,
+}
+
+impl DepthTable {
+    /// Names the file that an image was read from; `None` for one that was made in code.
+    pub(super) fn of(image: &DepthImage) -> Option<Self> {
+        let (file, options) = (image.file()?, image.options()?);
+        Some(Self {
+            file: file.to_owned(),
+            along: options.along,
+            channel: options.channel.clone(),
+            scale: options.scale,
+            none: options.none,
+        })
+    }
+
+    /// Reads the image; its path is from `folder`.
+    pub(super) fn open(&self, folder: &Path) -> Result<DepthImage, SceneError> {
+        self.check_scale().map_err(|fault| fault.of("depth"))?;
+        let mut options = DepthOptions::from(self.along);
+        options.channel.clone_from(&self.channel);
+        options.scale = self.scale;
+        options.none = self.none;
+        DepthImage::open(folder.join(&self.file), options)
+            .map_err(|error| SceneError::value("depth.file", error.to_string()))
+    }
+
+    fn check_scale(&self) -> Result<(), Fault> {
+        finite("scale", self.scale)?;
+        match self.scale == 0.0 {
+            true => Err(Fault::new("scale", "must not be 0")),
+            false => Ok(()),
+        }
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
+fn is_one(scale: &f64) -> bool {
+    *scale == 1.0
+}
+
+/// A number, or "nan", which JSON has no number for.
+#[derive(Deserialize, Serialize)]
+#[serde(untagged)]
+enum NumberOrNan {
+    Number(f64),
+    Nan(Nan),
+}
+
+#[derive(Deserialize, Serialize)]
+enum Nan {
+    #[serde(rename = "nan")]
+    Nan,
+}
+
+fn read_none<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Error> {
+    match NumberOrNan::deserialize(reader) {
+        Ok(NumberOrNan::Number(number)) => Ok(Some(number)),
+        Ok(NumberOrNan::Nan(Nan::Nan)) => Ok(Some(f64::NAN)),
+        Err(_) => Err(serde::de::Error::custom("expected a number or \"nan\"")),
+    }
+}
+
+fn write_none<S: Serializer>(none: &Option<f64>, writer: S) -> Result<S::Ok, S::Error> {
+    match none {
+        Some(number) if !number.is_nan() => writer.serialize_f64(*number),
+        _ => writer.serialize_str("nan"),
+    }
+}

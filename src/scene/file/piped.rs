@@ -1,0 +1,44 @@
+//! Scenes from pipes: what has no ending and no folder.
+
+use std::io::Read;
+use std::path::Path;
+
+use super::{Adjust, MethodKeys, read_as, text_of};
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+
+impl Scene {
+    /// Like [`Scene::from_file_with`], of what a pipe brings: JSON if it begins with `{`, else TOML; a depth image's
+    /// path is from the working folder. Errors call it `name`.
+    ///
+    /// # Errors
+    /// As [`Scene::from_file_with`].
+    pub fn from_reader_with(
+        mut reader: impl Read,
+        name: impl AsRef<Path>,
+        mut adjust: impl FnMut(&mut Self, &MethodKeys) -> Result<()>,
+    ) -> Result<Self> {
+        let (name, mut bytes) = (name.as_ref(), Vec::new());
+        reader.read_to_end(&mut bytes).map_err(|error| {
+            Error::input(name, format!("cannot read: {error}")).caused_by(error)
+        })?;
+        self::read(name, bytes, &mut adjust)
+    }
+}
+
+/// Returns whether a path is a pipe, or one that the system has for a file that is open already: it says neither a
+/// folder nor a format.
+pub(super) fn is_piped(path: &Path) -> bool {
+    let is_descriptor = ["/dev", "/proc"].iter().any(|root| path.starts_with(root));
+    cfg!(unix) && (is_descriptor || std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()))
+}
+
+/// Reads and checks a scene.
+pub(super) fn read(name: &Path, bytes: Vec<u8>, adjust: Adjust<'_>) -> Result<Scene> {
+    let text = text_of(name, bytes)?;
+    let is_json = text
+        .trim_start_matches('\u{feff}')
+        .trim_start()
+        .starts_with('{');
+    read_as(is_json, name, &text, Path::new(""), adjust)
+}
