@@ -11,6 +11,10 @@ use super::scenes::HardScene;
 const MOST_PIXELS: f64 = 2e-5;
 const WORST_PIXEL: f64 = 2e-4;
 
+/// Errors are relative to a pixel's light, and where sources cancel, to no less than this share of what they would add up
+/// to if all were positive.
+const CANCELLED: f64 = 1.0 / 30.0;
+
 /// How far a ray may be off, as a share of a scene's scale: where positions have float32's digits only, and where the
 /// reference's own decide, on which side of a plane a ray runs.
 const OF_FLOAT32: f64 = 1e-7;
@@ -45,7 +49,7 @@ pub struct Found {
 pub struct Checked<'a> {
     hard: &'a HardScene,
     expected: RadianceImage,
-    /// What errors are relative to.
+    /// The light of the scene with every light positive.
     light: RadianceImage,
 }
 
@@ -91,7 +95,8 @@ impl<'a> Checked<'a> {
         let error = |index: usize| {
             let at = |image: &RadianceImage| f64::from(image.as_slice()[index]);
             let (drawn, expected) = (at(image), at(&self.expected));
-            let error = (drawn - expected).abs() / at(&self.light).abs();
+            let light = expected.abs().max(CANCELLED * at(&self.light).abs());
+            let error = (drawn - expected).abs() / light;
             match () {
                 () if drawn == expected => 0.0,
                 () if error.is_nan() => f64::INFINITY,
@@ -169,7 +174,7 @@ impl<'a> Checked<'a> {
     }
 }
 
-/// Returns the scene with every light positive, where it has lights of both signs: errors are relative to that.
+/// Returns the scene with every light positive, where it has lights of both signs.
 fn with_positive_light(scene: &Scene) -> Option<Scene> {
     let mut positive = scene.clone();
     for sphere in positive.spheres.iter_mut() {
