@@ -48,8 +48,9 @@ pub(super) fn decode(file: &OpenExr, part: usize, channels: &[usize]) -> Outcome
     let mut found = HashSet::new();
     let mut pixels = 0;
     for place in table {
+        // A chunk that is not there, counted below, or one of a smaller level.
         let Some(chunk) = chunk(file, part, place)? else {
-            continue; // of a smaller level
+            continue;
         };
         let index = header
             .get_block_data_indices(&chunk.compressed_block)
@@ -69,7 +70,7 @@ pub(super) fn decode(file: &OpenExr, part: usize, channels: &[usize]) -> Outcome
         }
     }
     if pixels != width * height {
-        return Err("incomplete: some of its pixels are missing".to_owned());
+        return Err("cut off, or never finished: some of its pixels are missing".to_owned());
     }
     Ok(planes)
 }
@@ -89,12 +90,12 @@ fn table(file: &OpenExr, part: usize) -> Outcome<impl Iterator<Item = u64>> {
     Ok(places.iter().map(|place| u64::from_le_bytes(*place)))
 }
 
-/// Reads the chunk at a place of the file; none if it is not of the largest level.
+/// Reads the chunk at a place of the file; none if it is not there, or not of the largest level.
 fn chunk(file: &OpenExr, part: usize, place: u64) -> Outcome<Option<Chunk>> {
-    let cut = || "cut off, or never finished: a chunk of pixels is missing".to_owned();
+    let cut = || "cut off: a chunk of pixels is missing".to_owned();
     let begin = usize::try_from(place).map_err(|_| cut())?;
     let mut rest = match begin {
-        0 => return Err(cut()),
+        0 => return Ok(None),
         _ => file.bytes.get(begin..).ok_or_else(cut)?,
     };
     let mut number = || -> Outcome<i32> {
