@@ -61,6 +61,7 @@ pub mod papers;
 pub mod reference;
 mod render;
 pub mod scene;
+mod shown;
 mod threads;
 #[cfg(feature = "json")]
 pub mod verify;
@@ -76,3 +77,4 @@ pub use opencl::{DeviceForm, DeviceType, HostTarget, RendererOptions, keep_pocl_
 pub use opencl3; // whose handles hosts give
 pub use render::{Device, Devices, MappedImage, Renderer};
 pub use scene::{Ray, Scene};
+pub use shown::{shown, shown_lines};
