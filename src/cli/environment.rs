@@ -5,11 +5,12 @@ use energywave::{KernelCache, shown};
 use super::warn;
 
 /// Those that there are. What those of tests are called has a word of its own.
-const KNOWN: [&str; 4] = [
+const KNOWN: [&str; 5] = [
     "ENERGYWAVE_BUILD_OPTIONS",
     "ENERGYWAVE_CACHE",
     "ENERGYWAVE_CACHE_DIR",
     "ENERGYWAVE_DEVICE",
+    "ENERGYWAVE_FORM",
 ];
 const OF_TESTS: &str = "ENERGYWAVE_TEST_";
 

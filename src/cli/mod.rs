@@ -15,7 +15,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use energywave::scene::{MethodKeys, Scene};
-use energywave::{Device, Devices, Error, ErrorKind, shown, shown_lines};
+use energywave::{Device, DeviceType, Devices, Error, ErrorKind, shown, shown_lines};
 
 use args::{Arguments, Command};
 
@@ -37,14 +37,15 @@ impl From<Error> for Failure {
 
 type Outcome = Result<(), Failure>;
 
-/// Runs the program.
-pub fn run() -> ExitCode {
+/// Runs the program; `warnings` are of what it found before.
+pub fn run(warnings: &[String]) -> ExitCode {
     be_quiet_of_decoders();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return misused(&error),
     };
     environment::check();
+    warnings.iter().for_each(|warning| warn(warning));
     let outcome = match arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Devices(arguments) => devices::run(&arguments),
@@ -134,11 +135,18 @@ fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
         Some(word) => devices.select_all(word)?,
         None => vec![devices.best_or_reference()],
     };
+    let is_reference = |device: &Device| device.device_type == DeviceType::Reference;
+    if choice.is_none() && chosen.iter().any(is_reference) {
+        let problem = match devices.problem() {
+            Some(problem) => problem.to_owned(),
+            None => devices.absent().join("; "),
+        };
+        warn(&format!(
+            "{problem}; the built-in reference draws, hundreds of times slower"
+        ));
+    }
     for device in &chosen {
-        match devices.problem() {
-            Some(problem) if choice.is_none() => note(&format!("device: {device}: {problem}")),
-            _ => note(&format!("device: {device}")),
-        }
+        note(&format!("device: {device}"));
     }
     Ok(chosen)
 }

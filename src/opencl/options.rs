@@ -2,6 +2,7 @@
 
 #[cfg(feature = "kernel-cache")]
 use super::KernelCache;
+use super::SlowStart;
 use crate::error::{Error, Result};
 
 /// Choices of a renderer; the default suits the device.
@@ -25,6 +26,8 @@ pub struct RendererOptions {
     /// Whether what was built is kept on disk for the next start.
     #[cfg(feature = "kernel-cache")]
     pub cache: KernelCache,
+    /// Who is told of kernels whose first launch does not end; `None`: nobody.
+    pub slow_start: Option<SlowStart>,
     /// Further options for the OpenCL compiler, which may change what kernels do: see `internals`.
     pub(crate) compiler_options: String,
 }
