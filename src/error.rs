@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::shown::{shown, shown_line, shown_path};
+
 /// Shorthand for results of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -9,7 +11,8 @@ pub type Result<T> = std::result::Result<T, Error>;
 pub type Cause = Box<dyn std::error::Error + Send + Sync>;
 
 /// Everything that can go wrong. `Display` gives one message for people: what, where, why, and what to do;
-/// [`Error::kind`] and [`ErrorKind::code`] are for programs.
+/// [`Error::kind`] and [`ErrorKind::code`] are for programs. What a message repeats of a file or a path is escaped and
+/// shortened, see [`crate::shown`]; the fields hold it as it is.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -18,7 +21,7 @@ pub enum Error {
     Scene(SceneError),
 
     /// An input file cannot be read.
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: {}", shown_path(path), shown_line(reason))]
     #[non_exhaustive]
     Input {
         /// The file.
@@ -97,11 +100,11 @@ pub enum Error {
     OutOfMemory(String),
 
     /// The name of the output says no known format.
-    #[error("{}: unknown output ending; use .png (8-bit sRGB) or .exr (32-bit linear)", .0.display())]
+    #[error("{}: unknown output ending; use .png (8-bit sRGB) or .exr (32-bit linear)", shown_path(.0))]
     OutputFormat(PathBuf),
 
     /// The output cannot be written. Nothing is left behind.
-    #[error("{}: cannot write: {reason}", path.display())]
+    #[error("{}: cannot write: {}", shown_path(path), shown_line(reason))]
     #[non_exhaustive]
     Output {
         /// The file that was asked for.
@@ -257,16 +260,16 @@ impl std::error::Error for SceneError {}
 impl std::fmt::Display for SceneError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match &self.path {
-            Some(path) => write!(f, "{}:", path.display())?,
+            Some(path) => write!(f, "{}:", shown_path(path))?,
             None => write!(f, "scene:")?,
         }
         if let Some((line, column)) = self.position {
             write!(f, "{line}:{column}:")?;
         }
         if !self.key.is_empty() {
-            write!(f, " {}:", self.key)?;
+            write!(f, " {}:", shown(&self.key))?;
         }
-        write!(f, " {}", self.message)
+        write!(f, " {}", shown_line(&self.message))
     }
 }
 

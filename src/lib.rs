@@ -61,6 +61,7 @@ pub mod papers;
 pub mod reference;
 mod render;
 pub mod scene;
+mod shown;
 mod threads;
 #[cfg(feature = "json")]
 pub mod verify;
@@ -72,7 +73,11 @@ pub use glam; // whose vectors are in scenes
 pub use image::{DisplayImage, RadianceImage};
 #[cfg(feature = "kernel-cache")]
 pub use opencl::KernelCache;
-pub use opencl::{DeviceForm, DeviceType, HostTarget, RendererOptions, keep_pocl_threads_apart};
+pub use opencl::{
+    DeviceForm, DeviceType, HostTarget, RendererOptions, SlowStart, keep_pocl_threads_apart,
+    suit_pocl,
+};
 pub use opencl3; // whose handles hosts give
 pub use render::{Device, Devices, MappedImage, Renderer};
 pub use scene::{Ray, Scene};
+pub use shown::{shown, shown_lines};

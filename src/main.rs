@@ -7,6 +7,6 @@ use std::process::ExitCode;
 #[allow(unsafe_code)] // one call that must come before everything else
 fn main() -> ExitCode {
     // SAFETY: nothing has started a thread yet.
-    unsafe { energywave::keep_pocl_threads_apart() };
-    cli::run()
+    let warnings = unsafe { energywave::suit_pocl() };
+    cli::run(&warnings)
 }

@@ -58,8 +58,8 @@ fn modules_named(text: &str) -> Vec<String> {
     named
 }
 
-/// What a module may look at: what lies below it. Errors, costs, the host's memory and
-/// the files that are written lie below everything.
+/// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
+/// text is shown lie below everything.
 const LAYERS: [(&str, &[&str]); 9] = [
     ("image", &[]),
     ("opencl", &[]),
@@ -78,11 +78,12 @@ const LAYERS: [(&str, &[&str]); 9] = [
         &["opencl", "scene", "reference", "wave", "render"],
     ),
 ];
-const BELOW_ALL: [&str; 9] = [
+const BELOW_ALL: [&str; 10] = [
     "error",
     "cost",
     "memory",
     "output",
+    "shown",
     "threads",
     "Error",
     "Result",

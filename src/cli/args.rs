@@ -1,11 +1,14 @@
 //! What can be typed.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use energywave::image::{DepthAlong, DepthImage, DepthOptions, ImageSize};
 use energywave::scene::{Method, MethodKeys, Sampling, Scene};
-use energywave::{Error, RendererOptions};
+use energywave::{Error, RendererOptions, SlowStart};
+
+use super::warn;
 
 /// Volumetric energy effects, integrated along every view ray on any OpenCL device.
 #[derive(Debug, Parser)]
@@ -138,9 +141,16 @@ impl DeviceArgument {
         let mut options = RendererOptions::default();
         options.skips_self_test = self.no_self_test;
         (options.lanes, options.tile_workers) = (self.lanes, self.tile_workers);
+        options.slow_start = Some(SLOW_START);
         options
     }
 }
+
+/// Most drivers need seconds, Intel's a minute.
+pub const SLOW_START: SlowStart = SlowStart {
+    after: Duration::from_secs(60),
+    tell: warn,
+};
 
 /// Options that replace values of the scene file.
 #[derive(Debug, Args)]

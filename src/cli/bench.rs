@@ -9,7 +9,7 @@ use energywave::papers::{
     single_threaded_fps,
 };
 use energywave::scene::{Method, Sampling};
-use energywave::{Device, DeviceType, Error, Renderer, Scene};
+use energywave::{Device, DeviceType, Error, Renderer, Scene, shown};
 use serde::Serialize;
 
 use super::args::{BenchArguments, TableName};
@@ -252,7 +252,7 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     }
     print(&format!(
         "{}: {:.2} frames a second at {}x{}, {:.3} ms in kernels; {} integrals, {} samples a frame\n",
-        record.scene,
+        shown(&record.scene),
         record.fps,
         record.width,
         record.height,

@@ -14,8 +14,12 @@ pub fn run(arguments: &DevicesArguments) -> Outcome {
         let best = devices.best_or_reference();
         note(&format!("default: {best}: {}", reason(&best)));
     }
-    if let Some(problem) = devices.problem() {
-        note(&format!("OpenCL: {problem}"));
+    match devices.problem() {
+        Some(problem) => note(&format!("OpenCL: {problem}")),
+        None => {
+            let absent = devices.absent().iter();
+            absent.for_each(|reason| note(&format!("OpenCL: {reason}")));
+        }
     }
     Ok(())
 }

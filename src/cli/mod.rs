@@ -4,6 +4,7 @@ mod args;
 mod bench;
 mod compare;
 mod devices;
+mod environment;
 mod progress;
 mod render;
 mod verify;
@@ -13,8 +14,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
-use energywave::scene::MethodKeys;
-use energywave::{Device, Devices, Error, ErrorKind, Scene};
+use energywave::scene::{MethodKeys, Scene};
+use energywave::{Device, DeviceType, Devices, Error, ErrorKind, shown, shown_lines};
 
 use args::{Arguments, Command};
 
@@ -36,10 +37,15 @@ impl From<Error> for Failure {
 
 type Outcome = Result<(), Failure>;
 
-/// Runs the program.
-pub fn run() -> ExitCode {
+/// Runs the program; `warnings` are of what it found before.
+pub fn run(warnings: &[String]) -> ExitCode {
     be_quiet_of_decoders();
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return misused(&error),
+    };
+    environment::check();
+    warnings.iter().for_each(|warning| warn(warning));
     let outcome = match arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Devices(arguments) => devices::run(&arguments),
@@ -59,8 +65,7 @@ pub fn run() -> ExitCode {
         }
         Failure::Stdout(error) => (format!("standard output: cannot write: {error}"), 7),
     };
-    // Nobody is left to tell if standard error is closed.
-    let _ = writeln!(io::stderr(), "error: {message}");
+    note(&format!("error: {message}"));
     ExitCode::from(code)
 }
 
@@ -73,6 +78,31 @@ fn be_quiet_of_decoders() {
         }
     }));
 }
+
+/// Says what was typed wrong, or the help that was asked for; what was typed is repeated neither raw nor at length.
+fn misused(error: &clap::Error) -> ExitCode {
+    let plain = error.render().to_string();
+    let is_tame = |line: &str| shown_lines(line) == line && line.chars().count() <= MOST_COLUMNS;
+    if !error.use_stderr() || plain.lines().all(is_tame) {
+        error.exit();
+    }
+    for line in plain.lines() {
+        let length = line.chars().count();
+        let end: String = line.chars().skip(length.max(HALF) - HALF).collect();
+        match length > MOST_COLUMNS {
+            true => note(&format!(
+                "{}…{end}",
+                line.chars().take(HALF).collect::<String>()
+            )),
+            false => note(line),
+        }
+    }
+    ExitCode::from(2)
+}
+
+/// Longest line of a usage error that is printed whole.
+const MOST_COLUMNS: usize = 200;
+const HALF: usize = MOST_COLUMNS / 2;
 
 /// Returns the exit code of an error, one of those that `--help` lists.
 fn exit_code(error: &Error) -> u8 {
@@ -105,24 +135,35 @@ fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
         Some(word) => devices.select_all(word)?,
         None => vec![devices.best_or_reference()],
     };
+    let is_reference = |device: &Device| device.device_type == DeviceType::Reference;
+    if choice.is_none() && chosen.iter().any(is_reference) {
+        let problem = match devices.problem() {
+            Some(problem) => problem.to_owned(),
+            None => devices.absent().join("; "),
+        };
+        warn(&format!(
+            "{problem}; the built-in reference draws, hundreds of times slower"
+        ));
+    }
     for device in &chosen {
-        match devices.problem() {
-            Some(problem) if choice.is_none() => note(&format!("device: {device}: {problem}")),
-            _ => note(&format!("device: {device}")),
-        }
+        note(&format!("device: {device}"));
     }
     Ok(chosen)
 }
 
-/// Reads a scene from a file, or from standard input if it is called `-`.
+/// Reads a scene from a file, or from standard input if it is called `-`, and says what was hardly meant in it.
 fn read_scene(
     path: &Path,
     adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<(), Error>,
 ) -> Result<Scene, Error> {
-    match path == Path::new("-") {
-        true => Scene::from_reader_with(io::stdin().lock(), "standard input", adjust),
-        false => Scene::from_file_with(path, adjust),
+    let (scene, warnings) = match path == Path::new("-") {
+        true => Scene::from_reader_with_warnings(io::stdin().lock(), "standard input", adjust),
+        false => Scene::from_file_with_warnings(path, adjust),
+    }?;
+    for warning in warnings {
+        warn(&warning.to_string());
     }
+    Ok(scene)
 }
 
 /// Says on standard error what the scene's depths come to; if `quiet`, only what is likely wrong with them.
@@ -132,19 +173,24 @@ fn tell_depths(scene: &Scene, quiet: bool) {
     };
     let file = scene.depth.as_ref().and_then(|depth| depth.file());
     let name = file.and_then(|file| file.file_name()).unwrap_or_default();
-    let name = name.to_string_lossy();
+    let name = shown(&name.to_string_lossy());
     if !quiet {
         note(&format!("depth: {name}: {report}"));
     }
     for warning in &report.warnings {
-        note(&format!("warning: {name}: {warning}"));
+        warn(&format!("{name}: {warning}"));
     }
 }
 
-/// Writes one line to standard error.
-fn note(line: &str) {
+/// Writes a warning to standard error, also where quiet is asked for: the work goes on, but not as was meant.
+fn warn(message: &str) {
+    note(&format!("warning: {message}"));
+}
+
+/// Writes a message to standard error, mostly one line. Here at the latest nothing is left in it that a terminal obeys.
+fn note(message: &str) {
     // Nobody is left to tell if standard error is closed.
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", shown_lines(message));
 }
 
 /// Writes data to standard output.

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use energywave::scene::Method;
 use energywave::verify::{DIVISIONS, KnownRay, Row, built_in_rays, rays_from_file, verify};
-use energywave::{Device, Renderer, RendererOptions};
+use energywave::{Device, Renderer, RendererOptions, shown};
 
-use super::args::VerifyArguments;
+use super::args::{SLOW_START, VerifyArguments};
 use super::{Failure, Outcome, choose_devices, note, print, print_json};
 
 pub fn run(arguments: &VerifyArguments) -> Outcome {
@@ -18,6 +18,7 @@ pub fn run(arguments: &VerifyArguments) -> Outcome {
     // This command is the longer test, and shows every value.
     let mut options = RendererOptions::default();
     options.skips_self_test = true;
+    options.slow_start = Some(SLOW_START);
     name_unknown_kinds(&rays);
     let mut rows = Vec::new();
     for device in &devices {
@@ -54,7 +55,7 @@ fn name_unknown_kinds(rays: &[KnownRay]) {
         .map(|ray| ray.kind.as_str())
         .collect();
     for kind in unknown {
-        note(&format!("kind {kind}: not built yet, no row"));
+        note(&format!("kind {}: not built yet, no row", shown(kind)));
     }
 }
 

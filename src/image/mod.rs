@@ -38,25 +38,30 @@ impl RadianceImage {
     /// # Errors
     /// [`Error::OutOfMemory`] if the host has too little memory for it.
     pub fn new(size: ImageSize) -> Result<Self> {
+        Self::beside(size, 0)
+    }
+
+    /// Makes it where so many bytes more will be needed beside it.
+    pub(crate) fn beside(size: ImageSize, other_bytes: u64) -> Result<Self> {
         let values = 4 * size.pixels();
         // The radiance, and the picture that is made of it.
         let bytes = values * size_of::<f32>() + 3 * size.pixels();
-        let too_large = |available: String| {
+        let too_large = |why: String| {
             Error::OutOfMemory(format!(
-                "image of {}x{} pixels: {} MiB needed{available}; make the image smaller",
-                size.width,
-                size.height,
-                bytes >> 20
+                "image of {}x{} pixels: {why}; make the image smaller",
+                size.width, size.height
             ))
         };
-        if let Some(available) = memory::available_bytes()
-            && bytes as u64 > available
-        {
-            return Err(too_large(format!(", {} MiB available", available >> 20)));
+        if let Some(shortage) = memory::shortage(bytes as u64 + other_bytes) {
+            return Err(too_large(shortage));
         }
         let mut data = Vec::new();
-        data.try_reserve_exact(values)
-            .map_err(|_| too_large(", more than the system grants".to_owned()))?;
+        data.try_reserve_exact(values).map_err(|_| {
+            too_large(format!(
+                "{} MiB needed, more than the system grants",
+                bytes >> 20
+            ))
+        })?;
         data.resize(values, 0.0);
         Ok(Self { size, data })
     }

@@ -13,6 +13,7 @@ use etcetera::BaseStrategy;
 use sha2::{Digest, Sha256};
 
 use super::{OpenClDevice, ProgramKey};
+use crate::shown::{shown, shown_path};
 
 /// Environment variable that replaces the default choice, [`KernelCache::WhereMissing`]: `always` or `never`.
 const CHOICE_VARIABLE: &str = "ENERGYWAVE_CACHE";
@@ -58,6 +59,28 @@ impl KernelCache {
         let variable = std::env::var(CHOICE_VARIABLE).unwrap_or_default();
         let keeps = self.keeps(&variable, device.platform.trim()) && !device.is_simulator;
         keeps.then(Folder::of_user).flatten()
+    }
+
+    /// Says what the environment asks for that cannot be done, and is not: one text for each variable at fault.
+    #[must_use]
+    pub fn environment_faults() -> Vec<String> {
+        let choice = std::env::var_os(CHOICE_VARIABLE).unwrap_or_default();
+        let folder = std::env::var_os(FOLDER_VARIABLE).unwrap_or_default();
+        let (choice, folder) = (choice.to_string_lossy(), Path::new(&folder));
+        let mut faults = Vec::new();
+        if !["", "always", "never"].contains(&&*choice) {
+            faults.push(format!(
+                "{CHOICE_VARIABLE}: \"{}\" is no choice and counts for nothing; write always or never",
+                shown(&choice)
+            ));
+        }
+        if folder.exists() && !is_private(folder) {
+            faults.push(format!(
+                "{FOLDER_VARIABLE}: {} is no folder of your own that others cannot write to; no kernel is kept there",
+                shown_path(folder)
+            ));
+        }
+        faults
     }
 
     fn keeps(self, variable: &str, platform: &str) -> bool {
@@ -168,7 +191,7 @@ fn touch(path: &Path) -> io::Result<()> {
     file.set_modified(SystemTime::now())
 }
 
-fn create_private(folder: &Path) -> io::Result<()> {
+pub(super) fn create_private(folder: &Path) -> io::Result<()> {
     let mut builder = DirBuilder::new();
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
@@ -178,7 +201,7 @@ fn create_private(folder: &Path) -> io::Result<()> {
 /// Returns whether a folder exists, is the user's own, and is not writable by others: whoever writes entries runs code
 /// here.
 #[cfg(unix)]
-fn is_private(folder: &Path) -> bool {
+pub(super) fn is_private(folder: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let user = rustix::process::geteuid().as_raw();
     fs::metadata(folder)
@@ -186,7 +209,7 @@ fn is_private(folder: &Path) -> bool {
 }
 
 #[cfg(not(unix))]
-fn is_private(folder: &Path) -> bool {
+pub(super) fn is_private(folder: &Path) -> bool {
     folder.is_dir()
 }
 

@@ -1,5 +1,6 @@
 //! Which OpenCL devices there are, and what is missing where there are none.
 
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use opencl3::device::{
@@ -9,6 +10,8 @@ use opencl3::error_codes::{ClError, DLOPEN_FUNCTION_NOT_AVAILABLE, DLOPEN_RUNTIM
 use opencl3::platform::{Platform, get_platforms};
 use opencl3::types::cl_device_id;
 use serde::Serialize;
+
+use super::{absent, pocl};
 
 const CL_PLATFORM_NOT_FOUND_KHR: i32 = -1001;
 
@@ -82,6 +85,8 @@ pub struct Discovery {
     pub devices: Vec<OpenClDevice>,
     /// Why there is none, and what to install.
     pub problem: Option<String>,
+    /// Drivers that show no device that can draw, why, and what to do: one line each.
+    pub absent: Vec<String>,
 }
 
 /// An OpenCL device and its properties.
@@ -116,6 +121,19 @@ pub struct OpenClDevice {
     pub shares_host_memory: bool,
     /// Whether it is a simulator, which is never chosen by default.
     pub is_simulator: bool,
+    /// Why its driver is known not to draw; then it is never chosen by default either.
+    pub known_fault: Option<String>,
+}
+
+impl OpenClDevice {
+    /// Says what is known against its driver, if anything is.
+    fn fault_line(&self) -> Option<String> {
+        let fault = self.known_fault.as_ref()?;
+        Some(format!(
+            "{} ({}, {}): {fault}",
+            self.name, self.platform, self.driver
+        ))
+    }
 }
 
 /// Asks the OpenCL loader for every device of every platform.
@@ -129,40 +147,68 @@ pub fn discover() -> Discovery {
             return Discovery {
                 devices: Vec::new(),
                 problem: Some(problem),
+                absent: Vec::new(),
             };
         }
     };
     let platforms = match get_platforms() {
         Ok(platforms) => platforms,
         Err(ClError(code)) => {
+            let absent = absent::unloadable();
+            let problem = [vec![missing(code)], absent.clone()].concat().join("; ");
             return Discovery {
                 devices: Vec::new(),
-                problem: Some(missing(code)),
+                problem: Some(problem),
+                absent,
             };
         }
     };
-    let mut devices: Vec<OpenClDevice> = platforms
-        .iter()
-        .flat_map(|platform| {
-            let ids = platform.get_devices(CL_DEVICE_TYPE_ALL).unwrap_or_default();
-            ids.into_iter()
-                .filter_map(move |id| inspect(platform, id, form))
-        })
-        .collect();
+    let mut devices: Vec<OpenClDevice> = Vec::new();
+    let mut absent = Vec::new();
+    for platform in &platforms {
+        let found = usable_devices(platform, form);
+        if found.is_empty() {
+            absent.push(absent::reason(&platform.name().unwrap_or_default()));
+        }
+        devices.extend(found);
+    }
+    let faulty = devices.iter().filter_map(OpenClDevice::fault_line);
+    absent.extend(faulty.collect::<Vec<_>>());
+    // Asked only where a driver is missed: loading takes time.
+    if platforms.len() < absent::driver_files().len() {
+        absent.extend(absent::unloadable());
+    }
     devices.sort_by(|a, b| {
-        let key = |d: &OpenClDevice| (d.is_simulator, d.device_type != DeviceType::Gpu);
+        let is_shunned = |d: &OpenClDevice| d.is_simulator || d.known_fault.is_some();
+        let key = |d: &OpenClDevice| (is_shunned(d), d.device_type != DeviceType::Gpu);
         let names = |d: &OpenClDevice| (d.platform.clone(), d.name.clone());
         (key(a), names(a)).cmp(&(key(b), names(b)))
     });
     let names: Vec<String> = platforms.iter().filter_map(|p| p.name().ok()).collect();
     let problem = devices.is_empty().then(|| {
         format!(
-            "the OpenCL driver is installed ({}) but offers no usable device; check the driver (PoCL: is its cache \
-             folder, POCL_CACHE_DIR, writable?)",
-            names.join(", ")
+            "the OpenCL driver is installed ({}) but offers no usable device: {}",
+            names.join(", "),
+            absent.join("; ")
         )
     });
-    Discovery { devices, problem }
+    Discovery {
+        devices,
+        problem,
+        absent,
+    }
+}
+
+/// Returns the devices of a platform that can render; none of PoCL's where asking would end the process.
+fn usable_devices(platform: &Platform, form: Option<DeviceForm>) -> Vec<OpenClDevice> {
+    let is_pocl = platform.name().is_ok_and(|name| name == pocl::PLATFORM);
+    if is_pocl && pocl::ends_process(Path::new("/")).is_some() {
+        return Vec::new();
+    }
+    let ids = platform.get_devices(CL_DEVICE_TYPE_ALL).unwrap_or_default();
+    ids.into_iter()
+        .filter_map(|id| inspect(platform, id, form))
+        .collect()
 }
 
 /// Reads the properties of a device that someone else found; `None` if it cannot render.
@@ -189,6 +235,7 @@ fn inspect(
         bits if bits & CL_DEVICE_TYPE_CPU != 0 => DeviceType::Cpu,
         _ => DeviceType::Accelerator,
     };
+    let driver = handle.driver_version().ok()?.trim().to_owned();
     let is_simulator = platform.to_ascii_lowercase().contains("oclgrind");
     let width = match device_type {
         DeviceType::Cpu if !is_simulator => {
@@ -209,7 +256,6 @@ fn inspect(
         name: handle.name().ok()?.trim().to_owned(),
         device_type,
         version: handle.version().ok()?.trim().to_owned(),
-        driver: handle.driver_version().ok()?.trim().to_owned(),
         compute_units: handle.max_compute_units().ok()?,
         memory_bytes: handle.global_mem_size().ok()?,
         max_allocation_bytes: handle.max_mem_alloc_size().ok()?,
@@ -219,6 +265,8 @@ fn inspect(
         },
         most_workers: u32::try_from(handle.max_work_group_size().ok()?).unwrap_or(u32::MAX),
         form,
+        known_fault: absent::known_fault(&platform, &driver),
+        driver,
         shares_host_memory: handle.host_unified_memory().unwrap_or(false),
         is_simulator,
         platform,

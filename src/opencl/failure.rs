@@ -20,11 +20,26 @@ pub(super) fn failed<'a>(
 
 /// Makes the error of a call that would have been wrong and was not made.
 pub(super) fn fault(device: &str, call: &'static str, what: String) -> Error {
+    fault_of(
+        device,
+        call,
+        what,
+        "a fault of this library: please report it",
+    )
+}
+
+/// Makes the error of a call that was not made because it would have failed.
+pub(super) fn fault_of(
+    device: &str,
+    call: &'static str,
+    what: String,
+    advice: &'static str,
+) -> Error {
     Error::Device {
         device: device.to_owned(),
         call,
         code: what,
-        advice: "a fault of this library: please report it",
+        advice,
         source: None,
     }
 }

@@ -171,6 +171,18 @@ impl Film {
         Ok(wanted.max(1))
     }
 
+    /// Returns how much of the host's memory a buffer for so many pixels takes that is not there yet, bytes; 0 where a
+    /// device has its own.
+    pub(crate) fn missing_bytes(&self, compute: &Compute, pixels: usize) -> u64 {
+        if !compute.device().shares_host_memory {
+            return 0;
+        }
+        let bytes = |pixels: usize| (pixels * size_of::<Pixel>()) as u64;
+        let there = self.pixels.as_ref().map_or(0, DeviceBuffer::len);
+        let wanted = bytes(pixels).min(most_bytes(compute));
+        wanted.saturating_sub(bytes(there))
+    }
+
     fn reserve(&mut self, compute: &Compute, pixels: usize) -> Result<()> {
         let is_short = |buffer: &DeviceBuffer<Pixel>| buffer.len() < pixels;
         if self.pixels.as_ref().is_none_or(is_short) {

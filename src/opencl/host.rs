@@ -21,9 +21,9 @@ use super::Compute;
 use super::copies::state;
 use super::discover::device_of;
 use super::failure::failed;
-use super::film::{Film, halves_of};
+use super::film::{Film, FilmFormat, halves_of};
 use super::handle::Handle;
-use super::host_image::ImageInPlace;
+use super::host_image::{ImageCopy, ImageInPlace};
 use crate::error::{Error, Result};
 
 /// A host's memory that a frame is drawn into: linear radiance, RGBA by rows from the top left.
@@ -76,13 +76,19 @@ pub(crate) struct HostLink {
     _device: Handle<SubDevice>,
     /// Commands that nobody waited for: PoCL 3.1 aborts when an event fails that was released before it was over.
     held: Vec<Handle<Event>>,
+    /// Whether the driver built no kernels that write images.
+    copies_images: bool,
+    /// The buffer that was copied to an image last.
+    copy: Option<ImageCopy>,
 }
 
 /// A frame for a host that has begun.
 #[derive(Debug)]
 pub(crate) struct HostFrame {
     memory: Handle<Image>,
+    size: (u32, u32),
     in_place: Option<ImageInPlace>,
+    is_copied: bool,
 }
 
 impl HostLink {
@@ -119,6 +125,8 @@ impl HostLink {
             queue,
             _device: retained,
             held: Vec::new(),
+            copies_images: false,
+            copy: None,
         };
         Ok((Compute::in_context(context, &device)?, link))
     }
@@ -155,7 +163,41 @@ impl HostLink {
             (HostTarget::Image(image), None) => film.aim_at_image(image, has_halves),
         }
         film.begin_at(0);
-        Ok(HostFrame { memory, in_place })
+        let mut frame = HostFrame {
+            memory,
+            size,
+            in_place,
+            is_copied: false,
+        };
+        if self.copies_images {
+            self.copies_instead(compute, film, &mut frame)?;
+        }
+        Ok(frame)
+    }
+
+    /// Aims the film at a buffer that is copied to the image in the end, in this frame and later ones: PoCL 7 builds no
+    /// kernels of OpenCL C 1.2 that write images. Returns whether the film was aimed at an image.
+    pub(crate) fn copies_instead(
+        &mut self,
+        compute: &Compute,
+        film: &mut Film,
+        frame: &mut HostFrame,
+    ) -> Result<bool> {
+        let FilmFormat::Image { has_halves } = film.format() else {
+            return Ok(false);
+        };
+        self.copies_images = true;
+        let kept = self
+            .copy
+            .take()
+            .filter(|copy| copy.fits(has_halves, frame.size));
+        let copy = match kept {
+            Some(copy) => copy,
+            None => ImageCopy::new(compute, has_halves, frame.size)?,
+        };
+        self.copy.insert(copy).aim(film);
+        frame.is_copied = true;
+        Ok(true)
     }
 
     /// Ends a frame: what follows on the host's queue waits for it. Returns the event of that, a marker on the host's
@@ -168,9 +210,13 @@ impl HostLink {
         drawn: Result<()>,
     ) -> Result<Event> {
         film.aim_at_own();
-        let unmapped = match frame.in_place {
-            Some(image) => image.unmap(compute, &frame.memory, &mut self.held),
-            None => Ok(()),
+        let HostFrame { memory, size, .. } = frame;
+        let unmapped = match (frame.in_place, &self.copy) {
+            (Some(image), _) => image.unmap(compute, &memory, &mut self.held),
+            (None, Some(copy)) if frame.is_copied && drawn.is_ok() => {
+                copy.copy_to(compute, &memory, size, &mut self.held)
+            }
+            _ => Ok(()),
         };
         // What was launched before a failure draws into the target, too: what follows on the host's queue waits for it.
         let ended = self.end_before(compute);

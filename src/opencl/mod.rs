@@ -2,6 +2,7 @@
 //! knows no scene, and is the home of `unsafe`.
 #![allow(unsafe_code)] // calls into OpenCL are unsafe by nature; each block says why it is sound
 
+mod absent;
 mod affinity;
 mod buffer;
 #[cfg(feature = "kernel-cache")]
@@ -23,10 +24,12 @@ mod kernel;
 mod key;
 mod layout;
 mod options;
+mod pocl;
 mod program;
 mod record;
 mod source;
 mod uploaded;
+mod watch;
 
 pub use affinity::keep_pocl_threads_apart;
 pub use buffer::{DeviceBuffer, Pixel};
@@ -49,7 +52,10 @@ pub use key::ProgramKey;
 pub(crate) use layout::device_struct;
 pub use layout::{DeviceStruct, StructLayout};
 pub use options::RendererOptions;
+pub use pocl::suit_pocl;
 pub use program::Program;
 pub(crate) use source::embed;
 pub use source::{SHARED, SourceFile, Sources};
 pub use uploaded::{Uploaded, UploadedShared};
+pub use watch::SlowStart;
+pub(crate) use watch::Watch;

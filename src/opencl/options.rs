@@ -2,6 +2,7 @@
 
 #[cfg(feature = "kernel-cache")]
 use super::KernelCache;
+use super::SlowStart;
 use crate::error::{Error, Result};
 
 /// Choices of a renderer; the default suits the device.
@@ -15,8 +16,8 @@ use crate::error::{Error, Result};
 pub struct RendererOptions {
     /// Rays that a work-item carries side by side: 1, 4, 8 or 16; `None`: what suits the device.
     pub lanes: Option<u32>,
-    /// Work-items that share a tile, no more than 16 divided by the lanes: 1, 2, 4, 8 or 16; `None`: as many in the form
-    /// of a GPU, 1 in that of a CPU (see [`Device::form`](crate::Device::form)).
+    /// Work-items that share a tile, no more than 16 divided by the lanes: 1, 2, 4, 8 or 16; `None`: as many in the
+    /// form of a GPU, 1 in that of a CPU (see [`Device::form`](crate::Device::form)).
     pub tile_workers: Option<u32>,
     /// Whether the method `exact` counts its samples, for [`FrameCost::samples`](crate::FrameCost::samples).
     pub counts_samples: bool,
@@ -25,6 +26,8 @@ pub struct RendererOptions {
     /// Whether what was built is kept on disk for the next start.
     #[cfg(feature = "kernel-cache")]
     pub cache: KernelCache,
+    /// Who is told of kernels whose first launch does not end; `None`: nobody.
+    pub slow_start: Option<SlowStart>,
     /// Further options for the OpenCL compiler, which may change what kernels do: see `internals`.
     pub(crate) compiler_options: String,
 }

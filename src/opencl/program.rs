@@ -15,7 +15,7 @@ use super::handle::{Handle, RawProgram};
 use super::kernel::Kernel;
 use super::record::Record;
 use super::source::parameters;
-use super::{Compute, RendererOptions};
+use super::{Compute, RendererOptions, pocl};
 use crate::error::{Error, Result};
 
 /// Environment variable with further options for the kernels' compiler, such as `-D NAME` or `-cl-opt-disable`.
@@ -70,6 +70,7 @@ impl Program {
         let program = match kept {
             Some(program) => program,
             None => {
+                pocl::check_linker(device)?;
                 let program = create_program_with_source(compute.context.get(), &[&text])
                     .map(|program| Handle::new(RawProgram::new(program)))
                     .map_err(ClError)
@@ -77,7 +78,12 @@ impl Program {
                 build_for(compute, &program, &flags).map_err(|code| {
                     let id = device.handle.id();
                     let log = get_program_build_info(program.get(), id, CL_PROGRAM_BUILD_LOG);
-                    let log = log.map(String::from).unwrap_or_default();
+                    let mut log = log.map(String::from).unwrap_or_default();
+                    if let (pocl::PLATFORM, Some(fault)) =
+                        (device.platform.as_str(), pocl::cache_fault())
+                    {
+                        log = format!("PoCL's cache: {fault}\n{log}");
+                    }
                     let chosen = format!("LANES={lanes} {chosen}");
                     refused(format!("{}, {}", code_name(code), chosen.trim()), log)
                 })?;

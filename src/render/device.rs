@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use crate::error::{Error, Result};
 use crate::memory;
 use crate::opencl::{DeviceForm, DeviceType, Discovery, OpenClDevice, RendererOptions, discover};
+use crate::shown::shown;
 use crate::threads;
 use crate::wave::tile_workers;
 
@@ -60,6 +61,8 @@ pub struct Devices {
     list: Vec<Device>,
     #[serde(skip)]
     problem: Option<String>,
+    #[serde(skip)]
+    absent: Vec<String>,
 }
 
 fn as_list<S: Serializer>(list: &[Device], writer: S) -> std::result::Result<S::Ok, S::Error> {
@@ -102,7 +105,11 @@ impl Devices {
     /// Looks for devices.
     #[must_use]
     pub fn discover() -> Self {
-        let Discovery { devices, problem } = discover();
+        let Discovery {
+            devices,
+            problem,
+            absent,
+        } = discover();
         let mut list: Vec<Device> = devices
             .into_iter()
             .enumerate()
@@ -113,7 +120,11 @@ impl Devices {
         for device in &mut list {
             device.default = device.index == best;
         }
-        Self { list, problem }
+        Self {
+            list,
+            problem,
+            absent,
+        }
     }
 
     /// Returns all of them, in the order of their indices; the last is the built-in reference.
@@ -126,6 +137,12 @@ impl Devices {
     #[must_use]
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
+    }
+
+    /// Says of every driver that shows no device that can draw why, and what to do, a line each.
+    #[must_use]
+    pub fn absent(&self) -> &[String] {
+        &self.absent
     }
 
     /// Chooses the best OpenCL device, as [`Device::best`] does.
@@ -164,16 +181,18 @@ impl Devices {
         };
         match fitting.as_slice() {
             [device] => Ok((*device).clone()),
-            [] => Err(self.none(&format!("\"{choice}\""))),
+            [] => Err(self.none(&format!("\"{}\"", shown(choice)))),
             several => Err(Error::NoSuchDevice(format!(
-                "\"{choice}\" fits {} devices, choose one by its index or a longer part of its name:{}",
+                "\"{}\" fits {} devices, choose one by its index or a longer part of its name:{}",
+                shown(choice),
                 several.len(),
                 listed(several.iter().copied())
             ))),
         }
     }
 
-    /// Chooses the devices that `choice` names: `all`, every OpenCL device but simulators; or a list of what
+    /// Chooses the devices that `choice` names: `all`, every OpenCL device but simulators and
+    /// those whose driver is known not to draw; or a list of what
     /// [`Device::select`] takes, with commas between, such as `0,1` or `gpu,cpu`.
     ///
     /// # Errors
@@ -181,7 +200,7 @@ impl Devices {
     pub fn select_all(&self, choice: &str) -> Result<Vec<Device>> {
         if choice.trim().eq_ignore_ascii_case("all") {
             let is_real = |device: &&Device| {
-                device.device_type != DeviceType::Reference && !device.is_simulator()
+                device.device_type != DeviceType::Reference && !device.is_shunned()
             };
             let all: Vec<Device> = self.list.iter().filter(is_real).cloned().collect();
             return match all.is_empty() {
@@ -194,7 +213,8 @@ impl Devices {
             let device = self.select(word)?;
             if devices.iter().any(|there| there.index == device.index) {
                 return Err(Error::NoSuchDevice(format!(
-                    "\"{choice}\" names a device twice: {device}"
+                    "\"{}\" names a device twice: {device}",
+                    shown(choice)
                 )));
             }
             devices.push(device);
@@ -221,12 +241,8 @@ impl Devices {
             .iter()
             .filter(|device| device.device_type == device_type)
             .collect();
-        fitting.sort_by_key(|device| {
-            (
-                device.is_simulator(),
-                std::cmp::Reverse(device.compute_units),
-            )
-        });
+        fitting
+            .sort_by_key(|device| (device.is_shunned(), std::cmp::Reverse(device.compute_units)));
         fitting
     }
 
@@ -246,15 +262,17 @@ impl Devices {
 }
 
 impl Device {
-    fn is_simulator(&self) -> bool {
-        matches!(&self.backend, Backend::OpenCl(device) if device.is_simulator)
+    /// Returns whether it is a simulator, or its driver is known not to draw.
+    fn is_shunned(&self) -> bool {
+        let is_shunned = |it: &OpenClDevice| it.is_simulator || it.known_fault.is_some();
+        matches!(&self.backend, Backend::OpenCl(device) if is_shunned(device))
     }
 }
 
 /// Returns the place of the best GPU, else of the best CPU, else of the reference.
 fn best_index(list: &[Device]) -> usize {
     let rank = |device: &Device| match device.device_type {
-        _ if device.is_simulator() => 4,
+        _ if device.is_shunned() => 4,
         DeviceType::Gpu => 0,
         DeviceType::Cpu => 1,
         DeviceType::Reference => 2,

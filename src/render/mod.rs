@@ -146,7 +146,11 @@ impl Renderer {
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<RadianceImage> {
         self.check(scene)?;
-        let mut image = RadianceImage::new(scene.image)?;
+        let beside = match &self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.missing_bytes(scene.image.pixels()),
+            RendererBackend::Several(_) | RendererBackend::Reference { .. } => 0,
+        };
+        let mut image = RadianceImage::beside(scene.image, beside)?;
         let all = Rows {
             rows: 0..scene.image.height,
             target: image.as_mut_slice(),

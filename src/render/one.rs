@@ -55,6 +55,7 @@ impl DeviceRenderer {
         host: Option<HostLink>,
         options: &RendererOptions,
     ) -> Result<Self> {
+        check_known(compute.device(), options)?;
         Ok(Self {
             wave: Wave::new(&compute, options)?,
             film: Film::new(),
@@ -66,6 +67,11 @@ impl DeviceRenderer {
 
     pub(crate) fn wave(&mut self) -> &mut Wave {
         &mut self.wave
+    }
+
+    /// Returns how much more of the host's memory a frame of so many pixels takes, beside the image, bytes.
+    pub(crate) fn missing_bytes(&self, pixels: usize) -> u64 {
+        self.film.missing_bytes(&self.compute, pixels)
     }
 
     /// Returns what the last frame cost.
@@ -235,14 +241,31 @@ impl DeviceRenderer {
         let host = host.as_mut().ok_or_else(no_host)?;
         let size = (scene.image.width, scene.image.height);
         // SAFETY: the caller's promise.
-        let frame = unsafe { host.begin(compute, film, target, size, wait_list) }?;
-        let mut draw = || {
+        let mut frame = unsafe { host.begin(compute, film, target, size, wait_list) }?;
+        let mut draw = |film: &mut Film| {
             let plan = wave.plan(compute, scene, film.format())?;
             wave.begin(compute, &plan, scene.image.pixels())?;
             wave.draw_unwatched(compute, &plan, film)
         };
-        let drawn = draw();
+        let mut drawn = draw(film);
+        if matches!(drawn, Err(Error::Build { .. }))
+            && host.copies_instead(compute, film, &mut frame)?
+        {
+            drawn = draw(film);
+        }
         host.end(compute, film, frame, drawn)
+    }
+}
+
+/// Refuses a device whose driver is known not to draw, unless the caller insists.
+fn check_known(device: &OpenClDevice, options: &RendererOptions) -> Result<()> {
+    match &device.known_fault {
+        Some(fault) if !options.skips_self_test => Err(Error::SelfTest {
+            device: device.name.clone(),
+            driver: format!("{}, {}", device.platform, device.driver),
+            reason: fault.clone(),
+        }),
+        _ => Ok(()),
     }
 }
 

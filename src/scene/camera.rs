@@ -67,8 +67,7 @@ impl Camera {
             return Err(Fault::new("target", message));
         }
         if view.normalize().cross(self.up.normalize()).length() < 1e-6 {
-            let message = "parallel to the view direction; choose any other";
-            return Err(Fault::new("up", message));
+            return Err(Fault::new("up", self.parallel_up(view)));
         }
         match self.ray_length {
             Some(length) => positive("ray_length", length),
@@ -79,6 +78,19 @@ impl Camera {
             )),
             None => Ok(()),
         }
+    }
+
+    /// Says that `up` is parallel to the view, and which would not be; scenes often leave it out.
+    fn parallel_up(&self, view: DVec3) -> String {
+        let other = match view.normalize().z.abs() > 0.7 {
+            true => "[0.0, 1.0, 0.0]",
+            false => "[0.0, 0.0, 1.0]",
+        };
+        let default = match self.up == plus_z() {
+            true => "[0, 0, 1], the default, is ",
+            false => "",
+        };
+        format!("{default}parallel to the view direction; write another, such as up = {other}")
     }
 }
 

@@ -9,6 +9,7 @@ mod camera;
 mod depth_report;
 #[cfg(feature = "files")]
 mod file;
+mod in_view;
 mod integration;
 pub(crate) mod kinds;
 mod list;
@@ -17,6 +18,7 @@ mod source;
 mod stamp;
 mod validate;
 mod values;
+mod warnings;
 
 use glam::DVec3;
 

@@ -133,6 +133,7 @@ impl Wave {
                 self.unwatched.push(launched);
                 continue;
             }
+            self.first_launch = None;
             let times = launched.events.iter().map(|event| run_time(compute, event));
             if let Ok(time) = times.sum::<Result<Duration>>() {
                 self.pace.measured(launched.samples, time);
@@ -249,6 +250,7 @@ impl Wave {
         for event in &launched.events {
             time += run_time(compute, event)?;
         }
+        self.first_launch = None;
         self.pace.measured(launched.samples, time);
         if let Some(reset) = &launched.reset {
             wait(compute, reset, "clEnqueueWriteBuffer")?;

@@ -78,6 +78,11 @@ impl Kernels {
         Ok(Some(program))
     }
 
+    /// Returns whether a kernel is built.
+    pub(super) fn has(&self, task: Task) -> bool {
+        self.0.contains_key(&task)
+    }
+
     /// Forgets a kernel.
     pub(super) fn forget(&mut self, task: Task) {
         self.0.remove(&task);

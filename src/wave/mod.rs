@@ -31,7 +31,7 @@ pub(crate) use tiles::workers as tile_workers;
 use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{DepthImage, ImageSize};
-use crate::opencl::{Compute, FilmFormat, Handle, RendererOptions, UploadedShared};
+use crate::opencl::{Compute, FilmFormat, Handle, RendererOptions, UploadedShared, Watch};
 use crate::scene::{Method, Ray, Scene, ViewPlane};
 use counts::Counts;
 use dispatch::Launched;
@@ -61,6 +61,8 @@ pub struct Wave {
     under_way: VecDeque<Launched>,
     /// Launches of frames that nobody waited for.
     unwatched: Vec<Launched>,
+    /// Until a launch of kernels that were built last is over.
+    first_launch: Option<Watch>,
     /// Other commands of such frames: PoCL 3.1 aborts when an event fails that was released before it was over.
     held: Vec<Handle<Event>>,
 }
@@ -85,6 +87,7 @@ impl Wave {
             cost: FrameCost::default(),
             under_way: VecDeque::new(),
             unwatched: Vec::new(),
+            first_launch: None,
             held: Vec::new(),
             options: options.clone(),
         })
@@ -233,6 +236,9 @@ impl Wave {
             compute.device().compute_units,
         );
         let (kernels, options) = (&mut self.kernels, &self.options);
+        if let (false, Some(slow_start)) = (kernels.has(task), options.slow_start) {
+            self.first_launch = Some(Watch::begin(compute.device(), slow_start));
+        }
         if let Some(program) = kernels.prepare(compute, options, task, &rule)? {
             self.self_test(compute, task, &program)?;
         }

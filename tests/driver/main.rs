@@ -15,3 +15,4 @@ mod kernel_cache; // spoils the kernels that are kept on disk
 mod leaks; // counts objects and memory over ten thousand frames
 mod missing_opencl; // takes OpenCL away, or makes the choice of a device ambiguous
 mod self_test; // has kernels that compute wrong refused at their first use
+mod slow_start; // is told of a first launch that does not end

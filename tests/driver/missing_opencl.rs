@@ -53,7 +53,7 @@ fn a_device_that_is_not_there_or_fits_two_exits_with_4() {
 }
 
 #[test]
-fn without_opencl_the_reference_draws_and_one_line_says_what_to_install() {
+fn without_opencl_the_reference_draws_and_a_warning_says_what_to_install() {
     let folder = Folder::new();
     let libraries = without_loader(&folder);
     let empty = folder.path().join("vendors");
@@ -74,8 +74,17 @@ fn without_opencl_the_reference_draws_and_one_line_says_what_to_install() {
         command.args(["render", SCENE, "-o", "out.png", "--size", "8x8"]);
         let output = command.env(variable, value).output().unwrap();
         expect(&output, 0, words);
-        assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
-        assert!(stderr(&output).contains("reference"));
+        let said = stderr(&output);
+        let lines: Vec<&str> = said.lines().collect();
+        assert_eq!(lines.len(), 2, "{said}");
+        assert!(
+            lines[0].starts_with("warning: ") && lines[0].contains("hundreds of times slower"),
+            "{said}"
+        );
+        assert!(
+            lines[1].starts_with("device: ") && lines[1].contains("reference"),
+            "{said}"
+        );
         assert!(folder.names().contains(&"out.png".to_owned()));
 
         let devices = folder
@@ -94,6 +103,80 @@ fn without_opencl_the_reference_draws_and_one_line_says_what_to_install() {
             .unwrap();
         expect(&cpu, 4, words);
     }
+}
+
+#[test]
+fn a_driver_that_cannot_be_loaded_is_named_with_what_it_lacks() {
+    let folder = Folder::new();
+    let vendors = folder.path().join("vendors");
+    std::fs::create_dir(&vendors).unwrap();
+    std::fs::write(vendors.join("a.icd"), "/nowhere/libdriver.so\n").unwrap();
+    for arguments in [
+        &["render", SCENE, "-o", "out.png", "--size", "8x8"][..],
+        &["devices"],
+    ] {
+        let mut command = folder.command();
+        let output = command
+            .args(arguments)
+            .env("OCL_ICD_VENDORS", &vendors)
+            .output()
+            .unwrap();
+        expect(
+            &output,
+            0,
+            "a.icd names the driver /nowhere/libdriver.so, which cannot be loaded (",
+        );
+        expect(&output, 0, "No such file");
+    }
+}
+
+#[test]
+fn pocl_draws_without_a_path_and_without_a_folder_for_its_cache() {
+    if common::device().platform != "Portable Computing Language" {
+        println!("only PoCL needs them: not checked here");
+        return;
+    }
+    let folder = Folder::new();
+    let own = folder.path().join("run");
+    std::fs::create_dir(&own).unwrap();
+    let draw = |variables: &[(&str, &str)]| {
+        let mut command = folder.command();
+        command.args([
+            "render",
+            SCENE,
+            "-o",
+            "out.png",
+            "--size",
+            "8x8",
+            "--device",
+            device(),
+        ]);
+        command.env_clear().env("XDG_RUNTIME_DIR", &own);
+        command.envs(variables.iter().copied()).output().unwrap()
+    };
+    // Nothing is in its cache yet: it has to link.
+    let bare = draw(&[]);
+    expect(&bare, 0, "device: ");
+    assert_eq!(stderr(&bare).lines().count(), 1, "{}", stderr(&bare));
+    let count = |folder: &std::path::Path| std::fs::read_dir(folder).unwrap().count();
+    assert_eq!(count(&own), 1, "the kernels' folder");
+    // /proc takes no folder, whoever asks.
+    let home = draw(&[("HOME", "/proc/none")]);
+    expect(&home, 0, "device: ");
+    assert_eq!(stderr(&home).lines().count(), 1, "{}", stderr(&home));
+    let chosen = draw(&[("POCL_CACHE_DIR", "/proc/none")]);
+    expect(
+        &chosen,
+        0,
+        "warning: PoCL's cache: /proc/none cannot be written (",
+    );
+    let usable = folder.path().join("kernels");
+    expect(
+        &draw(&[("POCL_CACHE_DIR", usable.to_str().unwrap())]),
+        0,
+        "device: ",
+    );
+    assert!(count(&usable) > 0, "what the user chose is used");
 }
 
 #[test]

@@ -114,6 +114,67 @@ fn images_of_halves_and_those_that_cannot_be_mapped_get_the_same_image() {
     }
 }
 
+/// A scene whose kernels are built soon.
+fn one_sphere() -> Scene {
+    let mut scene = common::empty_scene(99, 70);
+    scene.integration.method = common::by(Sampling::Pixels);
+    scene.spheres.push(energywave::scene::Sphere::default());
+    scene
+}
+
+#[test]
+fn where_no_kernel_can_write_images_a_buffer_is_copied_to_them() {
+    let host = Host::new(0);
+    // As PoCL 7 does: kernels that write images are not built.
+    // SAFETY: such kernels are never run.
+    let options = unsafe {
+        energywave::internals::with_compiler_options(
+            &energywave::RendererOptions::default(),
+            "-D write_imagef=there_is_none",
+        )
+    };
+    let (context, queue) = (host.context.get(), host.queue.get());
+    // SAFETY: the host keeps both.
+    let mut renderer = unsafe { Renderer::on_raw_host(context, queue, &options) }.unwrap();
+    let scene = one_sphere();
+    let expected = renderer.render(&scene).unwrap();
+    let mut smaller = scene.clone();
+    smaller.image.height -= 9;
+    let smaller_expected = renderer.render(&smaller).unwrap();
+    let halves = HALF_ROUNDING + OTHER_KERNEL;
+    for (scene, expected, channel_type, limit) in [
+        (&scene, &expected, CL_FLOAT, 0.0),
+        (&scene, &expected, CL_HALF_FLOAT, halves),
+        (&smaller, &smaller_expected, CL_FLOAT, 0.0),
+    ] {
+        let size = scene.image;
+        let flags = CL_MEM_READ_WRITE | CL_MEM_HOST_NO_ACCESS;
+        let image = host.image_of(flags, size, CL_RGBA, channel_type);
+        let event = enqueue(&mut renderer, scene, (&image).into(), &[]).unwrap();
+        let copy = host.copy(&image, size, &event);
+        let worst = difference(&host.read((&copy).into(), size, &[]), expected);
+        assert!(worst <= limit, "{channel_type:#x}, {size:?}: {worst}");
+    }
+    // Without the fall-back it is an error: other faults of a build are told.
+    // SAFETY: no kernel is built.
+    let broken = unsafe {
+        energywave::internals::with_compiler_options(
+            &energywave::RendererOptions::default(),
+            "-D LANES=3",
+        )
+    };
+    // SAFETY: the host keeps both.
+    let mut renderer = unsafe { Renderer::on_raw_host(context, queue, &broken) }.unwrap();
+    let image = host.image_of(
+        CL_MEM_READ_WRITE | CL_MEM_HOST_NO_ACCESS,
+        scene.image,
+        CL_RGBA,
+        CL_FLOAT,
+    );
+    let error = enqueue(&mut renderer, &scene, (&image).into(), &[]).unwrap_err();
+    assert_eq!(error.kind(), energywave::ErrorKind::Build);
+}
+
 #[test]
 fn frames_wait_for_the_hosts_events_and_the_call_does_not() {
     for properties in [

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-const CAMERA: &str = "[camera]\neye = [0.0, -4.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n";
+pub const CAMERA: &str = "[camera]\neye = [0.0, -4.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n";
 
 /// What follows a valid [camera] of three lines; where the fault stands; words of the message.
 const BAD: &[(&str, &str, &str)] = &[
@@ -230,7 +230,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[torus]\nmajor_radius = 1\n",
         "4:1: torus",
-        "double brackets, such as [[sphere]]",
+        "write double brackets, [[torus]]",
     ),
     (
         "[[sphere]]\ncoefficient = 1e9\ncolor = [1e9, 1, 1]\n[decay]\nalpha = 1e6\nbeta = 0.01\n",
@@ -262,7 +262,7 @@ const BAD_FILES: &[(&str, &[u8], &str)] = &[
     ("no-camera.toml", b"[image]\nwidth = 5\n", "no-camera.toml:1:1: camera: required"),
     ("no-eye.toml", b"[camera]\ntarget = [0, 0, 0]\n", "no-eye.toml:1:1: camera.eye: required"),
     ("same.toml", b"[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n", "same.toml:3:10: camera.target: the same point"),
-    ("above.toml", b"[camera]\neye = [0, 0, 4]\ntarget = [0, 0, 0]\n", "above.toml:1:1: camera.up: parallel"),
+    ("above.toml", b"[camera]\neye = [0, 0, 4]\ntarget = [0, 0, 0]\n", "above.toml:1:1: camera.up: [0, 0, 1], the default, is parallel to the view direction; write another, such as up = [0.0, 1.0, 0.0]"),
     ("cut.toml", b"[camera]\neye = [0.0, -4", "cut.toml:2:15: unclosed array"),
     ("binary.toml", b"\x89PNG\r\n\x1a\n\x00\x00\xff\xfe", "binary.toml: not a text file"),
     ("zeros.toml", &[0; 64], "zeros.toml: not a text file (byte 0)"),
@@ -302,10 +302,15 @@ fn render(name: &str, contents: &[u8]) -> (Option<i32>, String, Vec<String>) {
     (output.status.code(), stderr, left(folder.path()))
 }
 
-fn check(name: &str, contents: &[u8], expected: &[&str]) {
+pub fn check(name: &str, contents: &[u8], expected: &[&str]) {
     let (code, message, left) = render(name, contents);
-    let text = String::from_utf8_lossy(contents);
+    let text = String::from_utf8_lossy(&contents[..contents.len().min(300)]);
     assert_eq!(code, Some(3), "{text}\n{message}");
+    let is_shown = |c: char| !c.is_control() || c == '\n';
+    assert!(
+        message.len() < 1000 && message.chars().all(is_shown),
+        "{message:?}"
+    );
     for words in expected {
         assert!(
             message.contains(words),

@@ -76,6 +76,49 @@ fn overrides_replace_the_scenes_values() {
 }
 
 #[test]
+fn an_environment_variable_that_counts_for_nothing_is_told() {
+    let folder = Folder::new();
+    let draw = |name: &str, value: &str| {
+        let mut command = folder.command();
+        command.args(["render", SCENE, "-o", "out.png", "--device", "reference"]);
+        command
+            .args(["--size", "2x2", "-q"])
+            .env(name, value)
+            .output()
+            .unwrap()
+    };
+    for (name, value, words) in [
+        (
+            "ENERGYWAVE_CACHE",
+            "alwyas",
+            "warning: ENERGYWAVE_CACHE: \"alwyas\" is no choice",
+        ),
+        ("ENERGYWAVE_CACHE", "\u{1b}x", "\\u{1b}x"),
+        (
+            "ENERGYWAVE_CACHE_DIR",
+            PROGRAM,
+            "warning: ENERGYWAVE_CACHE_DIR: ",
+        ),
+        (
+            "ENERGYWAVE_DEVCIE",
+            "cpu",
+            "warning: ENERGYWAVE_DEVCIE: no such environment variable; there are",
+        ),
+    ] {
+        let output = draw(name, value);
+        expect(&output, 0, words);
+        assert_eq!(stderr(&output).lines().count(), 2, "{}", stderr(&output));
+    }
+    for (name, value) in [
+        ("ENERGYWAVE_CACHE", "never"),
+        ("ENERGYWAVE_CACHE", ""),
+        ("ENERGYWAVE_CACHE_DIR", "none/yet"),
+    ] {
+        assert_eq!(stderr(&draw(name, value)).lines().count(), 1);
+    }
+}
+
+#[test]
 fn usage_errors_exit_with_2_and_write_nothing() {
     let folder = Folder::new();
     expect(&folder.run(&[]), 2, "Usage");
@@ -262,6 +305,51 @@ fn an_image_too_large_for_the_memory_exits_with_5() {
         .unwrap();
     expect(&output, 5, "make the image smaller");
     assert!(folder.names().is_empty(), "left: {:?}", folder.names());
+}
+
+#[test]
+fn a_large_scene_is_read_in_little_memory_or_refused() {
+    let folder = Folder::new();
+    let camera = "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n";
+    let table = "[[sphere]]\ncenter = [0.1, 0.2, 3.5]\n";
+    let inline = "{ center = [0.1, 0.2, 3.5] },\n";
+    let json = format!("{{\"center\": [0.1, 0.2, 3.5]}}{}", " ".repeat(270)); // as long as others are together
+    let many = |item: &str| item.repeat(100_000);
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    write("tables.toml", format!("{camera}{}", many(table)));
+    write(
+        "inline.toml",
+        format!("sphere = [{}]\n{camera}", many(inline)),
+    );
+    let json = vec![json; 100_000].join(",");
+    write(
+        "large.json",
+        format!(
+            "{{\"camera\": {{\"eye\": [0, -4, 2], \"target\": [0, 0, 0]}}, \"sphere\": [{json}]}}"
+        ),
+    );
+    // Whole, the tables took 260 MiB.
+    for (name, code, words) in [
+        ("tables.toml", 0, "device: "),
+        ("inline.toml", 5, "ulimit -v"),
+        ("large.json", 5, "ulimit -v"),
+    ] {
+        let script = format!(
+            "ulimit -v 300000; exec '{PROGRAM}' render {name} -o out.exr --device reference --size 1x1"
+        );
+        let mut command = Command::new("sh");
+        let output = command
+            .args(["-c", &script])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        expect(&output, code, words);
+        let said = stderr(&output);
+        assert!(
+            code == 0 || said.contains("MiB needed") && said.contains("may address 292 MiB"),
+            "{said}"
+        );
+    }
 }
 
 #[test]

@@ -13,7 +13,9 @@ mod damaged; // changes bytes of images and scenes
 mod depths; // reads depth images of other programs
 mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
+mod messages; // is told what to write instead, and nothing raw or long
 #[cfg(unix)] // as cli
 mod outputs; // writes to links, pipes and devices, and reads scenes from pipes
 mod scene_files; // reads again what was written
 mod verify; // checks known rays, past sources and past whole scenes
+mod warnings; // is told what a scene was hardly meant to say

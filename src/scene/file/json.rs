@@ -2,28 +2,37 @@
 
 use std::path::Path;
 
-use super::{Adjust, SceneFile, empty_file, name_missing, plain_words};
+use super::numbers::around;
+use super::words::{Language, name_missing, no_value, plain};
+use super::{Adjust, Read, SceneFile, check_memory, empty_file};
 use crate::error::{Error, Result, SceneError};
 use crate::scene::Scene;
 use crate::scene::values::unnamed;
 
+/// Bytes that reading takes for each byte of a text, at most.
+const MEMORY_FACTOR: u64 = 12;
+
 /// Reads and checks a scene.
-pub(super) fn read(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
+pub(super) fn read(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Read> {
     let text = text.trim_start_matches('\u{feff}');
     if text.trim().is_empty() {
         return Err(empty_file().into());
     }
+    check_memory("the scene", text.len(), MEMORY_FACTOR)?;
     let mut reader = serde_json::Deserializer::from_str(text);
     let file: SceneFile = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-        let key = match error.path().to_string() {
-            unknown if unknown == "." || unknown == "?" => String::new(),
-            key => key,
-        };
+        let key = error.path().to_string();
+        let key = key.trim_end_matches(['?', '.']).to_owned();
         let inner = error.inner();
-        let words = plain_words(without_position(&inner.to_string()));
-        let (key, message) = match unnamed(&words) {
-            Some((field, message)) => (format!("{key}.{field}"), message.to_owned()),
-            None => name_missing(key, words),
+        let words = inner.to_string();
+        let words = without_position(&words);
+        let (key, message) = if let Some((field, message)) = unnamed(words) {
+            (format!("{key}.{field}"), message.to_owned())
+        } else if let Some(message) = bad_value(text, inner, &key) {
+            (key, message)
+        } else {
+            let (key, words) = plain(Language::Json, key, words);
+            name_missing(key, words)
         };
         SceneError {
             path: None,
@@ -36,9 +45,11 @@ pub(super) fn read(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Scen
         path: None,
         position: Some((error.line(), error.column())),
         key: String::new(),
-        message: plain_words(without_position(&error.to_string())),
+        message: without_position(&error.to_string()).to_owned(),
     })?;
-    file.into_scene(folder, adjust)
+    let scene = file.into_scene(folder, adjust)?;
+    let warnings = scene.warnings();
+    Ok((scene, warnings))
 }
 
 /// Writes a scene.
@@ -49,4 +60,23 @@ pub(super) fn write(scene: &Scene) -> Result<String> {
 /// Cuts off the position with which serde_json ends its messages: ours stands at the front.
 fn without_position(message: &str) -> &str {
     message.split(" at line ").next().unwrap_or(message)
+}
+
+/// Returns the message of something in the place of a value, such as `.5` or a word without quotes; `None` where the
+/// fault is another.
+fn bad_value(text: &str, error: &serde_json::Error, key: &str) -> Option<String> {
+    let words = error.to_string();
+    let words = without_position(&words);
+    let is_of_value = ["expected value", "invalid number", "expected ident"].contains(&words);
+    let is_behind = ["key must be a string", "expected `,` or `}`"].contains(&words);
+    if !error.is_syntax() || !(is_of_value || is_behind) {
+        return None;
+    }
+    let line = text.lines().nth(error.line().checked_sub(1)?)?;
+    // A column is the place behind the character at fault.
+    let raw = around(line, error.column().saturating_sub(1), is_behind);
+    let raw = raw.trim_end_matches(',');
+    let is_second =
+        is_behind && !raw.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    (!raw.is_empty() && !is_second).then(|| no_value(Language::Json, key, raw))
 }

@@ -4,7 +4,12 @@ mod depth;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
+mod numbers;
+mod pieces;
 mod piped;
+mod scan;
+mod toml;
+mod words;
 mod write;
 
 use std::path::{Path, PathBuf};
@@ -12,15 +17,18 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::integration::{check_divisions, check_tolerance};
-use super::kinds::for_each_kind;
-use super::values::{Fault, unnamed};
+use super::kinds::{KIND_COUNT, for_each_kind};
+use super::values::Fault;
 use super::*;
 use crate::error::{Error, Result, SceneError};
+use crate::memory;
 use depth::DepthTable;
-use locate::{KeyMap, line_and_column};
 
 /// Changes a scene between its reading and its check.
 type Adjust<'a> = &'a mut dyn FnMut(&mut Scene, &MethodKeys) -> Result<()>;
+
+/// What a file holds: a scene, and its warnings.
+type Read = (Scene, Vec<SceneError>);
 
 macro_rules! define_scene_file {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
@@ -42,6 +50,13 @@ macro_rules! define_scene_file {
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
         }
 
+        /// A run of sources of a file.
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct SourceTables {
+            $(#[serde(default)] $kind: Vec<$Type>,)*
+        }
+
         impl SceneFile {
             /// Returns the scene without its depth image.
             fn scene(&mut self) -> Scene {
@@ -54,6 +69,27 @@ macro_rules! define_scene_file {
                     depth: None,
                     $($list: std::mem::take(&mut self.$kind),)*
                 }
+            }
+
+            /// Makes room for so many sources of each kind, in the order of the table.
+            fn reserve(&mut self, counts: [usize; KIND_COUNT]) {
+                let mut counts = counts.into_iter();
+                $(
+                    let count = counts.next().unwrap_or(0);
+                    if count > self.$kind.len() {
+                        let more = count - self.$kind.len();
+                        self.$kind.reserve_exact(more);
+                    }
+                )*
+            }
+
+            /// Adds the sources of a run of tables.
+            fn add(&mut self, run: SourceTables) {
+                $(
+                    if !run.$kind.is_empty() {
+                        self.$kind.extend(run.$kind);
+                    }
+                )*
             }
 
             /// Makes a file's scene as it is written.
@@ -223,8 +259,19 @@ impl Scene {
     /// As [`Scene::from_file`], and those of `adjust`.
     pub fn from_file_with(
         path: impl AsRef<Path>,
-        mut adjust: impl FnMut(&mut Self, &MethodKeys) -> Result<()>,
+        adjust: impl FnMut(&mut Self, &MethodKeys) -> Result<()>,
     ) -> Result<Self> {
+        Ok(Self::from_file_with_warnings(path, adjust)?.0)
+    }
+
+    /// Like [`Scene::from_file_with`]; also gives [`Scene::warnings`], with file and, of TOML, line and column.
+    ///
+    /// # Errors
+    /// As [`Scene::from_file_with`].
+    pub fn from_file_with_warnings(
+        path: impl AsRef<Path>,
+        mut adjust: impl FnMut(&mut Self, &MethodKeys) -> Result<()>,
+    ) -> Result<(Self, Vec<SceneError>)> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|error| {
             Error::input(path, format!("cannot read: {error}")).caused_by(error)
@@ -242,7 +289,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with line, column and key.
     pub fn from_toml(text: &str) -> Result<Self> {
-        from_toml(text, Path::new(""), &mut |_, _| Ok(()))
+        Ok(toml::read(text, Path::new(""), &mut |_, _| Ok(()))?.0)
     }
 
     /// Reads and validates a scene in JSON, of the same structure as the TOML.
@@ -251,7 +298,7 @@ impl Scene {
     /// [`Error::Scene`] with the key; faults of the syntax have line and column too.
     #[cfg(feature = "json")]
     pub fn from_json(text: &str) -> Result<Self> {
-        json::read(text, Path::new(""), &mut |_, _| Ok(()))
+        Ok(json::read(text, Path::new(""), &mut |_, _| Ok(()))?.0)
     }
 }
 
@@ -260,20 +307,16 @@ fn is_json(path: &Path) -> bool {
         .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
 }
 
-fn from_toml(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
-    let locate = |key: &str| {
-        let offset = KeyMap::new(text).offset_of(key);
-        line_and_column(text, offset.unwrap_or(0))
-    };
-    let file: SceneFile = toml::from_str(text).map_err(|error| toml_fault(text, &error))?;
-    file.into_scene(folder, adjust)
-        .map_err(|error| match error {
-            Error::Scene(mut fault) => {
-                fault.position = Some(locate(&fault.key));
-                Error::Scene(fault)
-            }
-            other => other,
-        })
+/// Checks that a text of so many bytes can be read in the memory that there is, of which each byte takes `factor`.
+fn check_memory(what: &str, bytes: usize, factor: u64) -> Result<()> {
+    let needed = (bytes as u64).saturating_mul(factor);
+    match memory::shortage(needed) {
+        Some(shortage) => Err(Error::OutOfMemory(format!(
+            "reading {what}, {} MiB: {shortage}; make it smaller",
+            bytes >> 20
+        ))),
+        None => Ok(()),
+    }
 }
 
 fn read_as(
@@ -282,12 +325,16 @@ fn read_as(
     text: &str,
     folder: &Path,
     adjust: Adjust<'_>,
-) -> Result<Scene> {
-    let scene = match is_json {
+) -> Result<Read> {
+    let read = match is_json {
         true => json::read(text, folder, adjust),
-        false => from_toml(text, folder, adjust),
+        false => toml::read(text, folder, adjust),
     };
-    scene.map_err(|error| name_file(error, name))
+    let (scene, mut warnings) = read.map_err(|error| name_file(error, name))?;
+    for warning in &mut warnings {
+        warning.path = Some(name.to_owned());
+    }
+    Ok((scene, warnings))
 }
 
 fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String> {
@@ -304,38 +351,6 @@ fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String> {
     )))
 }
 
-/// Makes the fault of syntax, type or key name that the TOML reader found.
-fn toml_fault(text: &str, error: &toml::de::Error) -> SceneError {
-    if text.trim().is_empty() {
-        return empty_file();
-    }
-    let span = error.span().unwrap_or(0..0);
-    let offset = span.start;
-    let key = KeyMap::new(text).path_at(&span).unwrap_or("").to_owned();
-    let words = plain_words(error.message());
-    if let Some((field, message)) = unnamed(&words) {
-        let key = format!("{key}.{field}");
-        let offset = KeyMap::new(text).offset_of(&key).unwrap_or(offset);
-        return SceneError {
-            position: Some(line_and_column(text, offset)),
-            ..SceneError::value(key, message)
-        };
-    }
-    let (key, mut message) = name_missing(key, words);
-    if let (Some(quoted), true) = (text.get(span), key.is_empty())
-        && (1..40).contains(&quoted.len())
-        && !quoted.contains(['\n', '`'])
-    {
-        message += &format!(" `{quoted}`");
-    }
-    SceneError {
-        path: None,
-        position: Some(line_and_column(text, offset)),
-        key,
-        message,
-    }
-}
-
 fn empty_file() -> SceneError {
     SceneError {
         position: Some((1, 1)),
@@ -344,38 +359,6 @@ fn empty_file() -> SceneError {
             "the file is empty; a scene needs at least [camera] with eye and target",
         )
     }
-}
-
-/// Turns "missing field `x`" in table `key` into a fault of `key.x`.
-fn name_missing(key: String, message: String) -> (String, String) {
-    let field = message
-        .strip_prefix("missing field `")
-        .and_then(|rest| rest.strip_suffix('`'));
-    let key = match field {
-        // Only [camera] is required at the top, which has no key of its own.
-        Some("camera") => "camera".to_owned(),
-        Some(field) => format!("{key}.{field}"),
-        None => return (key, message),
-    };
-    (key, "required, but missing".to_owned())
-}
-
-/// Puts a message into plain words: serde speaks of Rust types, a scene's author thinks of numbers.
-fn plain_words(message: &str) -> String {
-    message
-        .trim()
-        .replace("floating point `", "number `")
-        .replace("expected f64", "expected a number")
-        .replace(
-            "expected u32",
-            "expected a whole number from 0 to 4294967295",
-        )
-        .replace(
-            "invalid type: map, expected a sequence",
-            "there may be several: write double brackets, such as [[sphere]]",
-        )
-        .replace("expected struct ", "expected the table of ")
-        .replace('\n', "; ")
 }
 
 fn name_file(error: Error, path: &Path) -> Error {

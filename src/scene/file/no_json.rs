@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::Adjust;
+use super::{Adjust, Read};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
-pub(super) fn read(_: &str, _: &Path, _: Adjust<'_>) -> Result<Scene> {
+pub(super) fn read(_: &str, _: &Path, _: Adjust<'_>) -> Result<Read> {
     Err(missing())
 }
 

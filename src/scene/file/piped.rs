@@ -3,8 +3,8 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::{Adjust, MethodKeys, read_as, text_of};
-use crate::error::{Error, Result};
+use super::{Adjust, MethodKeys, Read as ReadScene, read_as, text_of};
+use crate::error::{Error, Result, SceneError};
 use crate::scene::Scene;
 
 impl Scene {
@@ -14,10 +14,22 @@ impl Scene {
     /// # Errors
     /// As [`Scene::from_file_with`].
     pub fn from_reader_with(
+        reader: impl Read,
+        name: impl AsRef<Path>,
+        adjust: impl FnMut(&mut Self, &MethodKeys) -> Result<()>,
+    ) -> Result<Self> {
+        Ok(Self::from_reader_with_warnings(reader, name, adjust)?.0)
+    }
+
+    /// Like [`Scene::from_reader_with`]; also gives [`Scene::warnings`], as [`Scene::from_file_with_warnings`] does.
+    ///
+    /// # Errors
+    /// As [`Scene::from_file_with`].
+    pub fn from_reader_with_warnings(
         mut reader: impl Read,
         name: impl AsRef<Path>,
         mut adjust: impl FnMut(&mut Self, &MethodKeys) -> Result<()>,
-    ) -> Result<Self> {
+    ) -> Result<(Self, Vec<SceneError>)> {
         let (name, mut bytes) = (name.as_ref(), Vec::new());
         reader.read_to_end(&mut bytes).map_err(|error| {
             Error::input(name, format!("cannot read: {error}")).caused_by(error)
@@ -34,7 +46,7 @@ pub(super) fn is_piped(path: &Path) -> bool {
 }
 
 /// Reads and checks a scene.
-pub(super) fn read(name: &Path, bytes: Vec<u8>, adjust: Adjust<'_>) -> Result<Scene> {
+pub(super) fn read(name: &Path, bytes: Vec<u8>, adjust: Adjust<'_>) -> Result<ReadScene> {
     let text = text_of(name, bytes)?;
     let is_json = text
         .trim_start_matches('\u{feff}')

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, direction, finite, named, positive, read_vector, vector};
 
 /// A half-line of light (Abe, Watanabe 2010, eq. 6, 11, 12); `1/d^2` for `1/d` by its [`Profile`]. Ahead of the plane
@@ -102,6 +102,15 @@ impl SourceKind for Beam {
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
         for coefficient in [self.coefficient, self.cap(), self.sphere_coefficient] {
             add(coefficient * self.color);
+        }
+    }
+
+    fn core(&self) -> Core {
+        let direction = self.direction.normalize();
+        Core::Line {
+            point: self.tip - direction * self.taper_length().unwrap_or(0.0),
+            direction,
+            begins: true,
         }
     }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{Brightness, Light, Profile, SourceKind, item, one, white};
+use super::{Brightness, Core, Light, Profile, SourceKind, item, one, white};
 use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
 
 /// A quadratic Bezier curve of light: `S(t*)/d`, or by its [`Profile`] `S(t*)/d^2`, d the distance to its nearest point
@@ -81,6 +81,10 @@ impl SourceKind for Curve {
         for weight in self.intensity.as_deref().unwrap_or(&[1.0]) {
             add(self.coefficient * weight * self.color);
         }
+    }
+
+    fn core(&self) -> Core {
+        Core::Bezier(self.control_points)
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, direction, read_vector, vector};
 
 /// An infinite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the line (2015, eq. 3).
@@ -53,6 +53,14 @@ impl SourceKind for Cylinder {
             coefficient: self.coefficient,
             color: self.color,
             profile: self.profile,
+        }
+    }
+
+    fn core(&self) -> Core {
+        Core::Line {
+            point: self.point,
+            direction: self.direction.normalize(),
+            begins: false,
         }
     }
 

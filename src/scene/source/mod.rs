@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
 
+mod core;
+
+pub(super) use core::Core;
+
 macro_rules! declare_kinds {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         $(mod $kind;)*
@@ -55,6 +59,9 @@ pub(crate) trait SourceKind {
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
         add(self.light().emission());
     }
+
+    /// Returns where its core is, of a source whose values are right.
+    fn core(&self) -> Core;
 
     /// Makes a source of this kind at about `place`, for the self-test of kernels.
     fn specimen(place: DVec3, profile: Profile) -> Self;

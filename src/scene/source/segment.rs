@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, read_vector, vector};
 
 /// A finite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point between its ends.
@@ -55,6 +55,10 @@ impl SourceKind for Segment {
             color: self.color,
             profile: self.profile,
         }
+    }
+
+    fn core(&self) -> Core {
+        Core::between(self.from, self.to)
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {

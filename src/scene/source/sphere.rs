@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, read_vector, vector};
 
 /// A point of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the point M (2015, eq. 2).
@@ -45,6 +45,10 @@ impl SourceKind for Sphere {
             color: self.color,
             profile: self.profile,
         }
+    }
+
+    fn core(&self) -> Core {
+        Core::point(self.center)
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Light, Profile, SourceKind, one, plus_z, white};
+use super::{Brightness, Core, Light, Profile, SourceKind, one, plus_z, white};
 use crate::scene::values::{Checked, direction, positive, read_vector, vector};
 
 /// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle
@@ -58,6 +58,14 @@ impl SourceKind for Torus {
             coefficient: self.coefficient,
             color: self.color,
             profile: self.profile,
+        }
+    }
+
+    fn core(&self) -> Core {
+        Core::Circle {
+            center: self.center,
+            axis: self.axis.normalize(),
+            radius: self.major_radius,
         }
     }
 

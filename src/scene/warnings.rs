@@ -1,0 +1,251 @@
+//! What can be drawn and was hardly meant: numbers in other units, and pictures that are black.
+
+use std::fmt::Write;
+
+use glam::DVec3;
+
+use super::kinds::for_each_kind;
+use super::source::Core;
+use super::{Scene, SourceKind};
+use crate::error::SceneError;
+
+/// A view of at most so many degrees may have been meant in radians, of which half a turn has 3.1.
+const NARROWEST: f64 = 3.0;
+
+/// Whole numbers from here on in a colour look like 0 to 255; light brighter than white is mostly not that bright.
+const LEAST_BYTE: f64 = 16.0;
+
+/// A source as the warnings see it.
+pub(super) struct Seen {
+    kind: &'static str,
+    index: usize,
+    color: DVec3,
+    pub core: Core,
+    /// The least and the greatest light of its parts, of all channels.
+    pub light: (f64, f64),
+}
+
+impl Seen {
+    fn new(kind: &'static str, index: usize, source: &impl SourceKind) -> Self {
+        let mut light = (0.0_f64, 0.0_f64);
+        source.for_each_emission(&mut |emission| {
+            light = (
+                light.0.min(emission.min_element()),
+                light.1.max(emission.max_element()),
+            );
+        });
+        Self {
+            kind,
+            index,
+            color: source.light().color,
+            core: source.core(),
+            light,
+        }
+    }
+
+    pub(super) fn key(&self) -> String {
+        format!("{}[{}]", self.kind, self.index)
+    }
+}
+
+macro_rules! see_sources {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        impl Scene {
+            /// Calls `visit` with every source, until it returns false.
+            pub(super) fn all_sources(&self, visit: &mut dyn FnMut(&Seen) -> bool) {
+                $(
+                    for (index, source) in self.$list.iter().enumerate() {
+                        if !visit(&Seen::new(stringify!($kind), index, source)) {
+                            return;
+                        }
+                    }
+                )*
+            }
+        }
+    };
+}
+for_each_kind!(see_sources);
+
+impl Scene {
+    /// Returns what can be drawn and was hardly meant, each like a fault with key and message: an angle in radians,
+    /// colours from 0 to 255, light that nobody can see. The order is that of the keys in the scene; of many sources at
+    /// fault in the same way the first is named.
+    ///
+    /// The scene is to be valid ([`Scene::validate`]). Files tell the place too: [`Scene::from_file_with_warnings`].
+    #[must_use]
+    pub fn warnings(&self) -> Vec<SceneError> {
+        let angle = self.narrow_view();
+        let dark = self.darkness().or_else(|| self.out_of_view());
+        angle
+            .into_iter()
+            .chain(self.byte_colors())
+            .chain(dark)
+            .collect()
+    }
+
+    fn narrow_view(&self) -> Option<SceneError> {
+        let fov_y = self.camera.fov_y;
+        (fov_y <= NARROWEST).then(|| {
+            let message = format!(
+                "{fov_y} degrees are a narrow view; if radians were meant, write {:.1}",
+                fov_y.to_degrees()
+            );
+            SceneError::value("camera.fov_y", message)
+        })
+    }
+
+    fn byte_colors(&self) -> Option<SceneError> {
+        let mut first: Option<SceneError> = None;
+        let mut more = 0;
+        self.all_sources(&mut |source| {
+            let color = source.color.to_array();
+            let is_byte = |value: f64| (0.0..=255.0).contains(&value) && value.fract() == 0.0;
+            if !color.into_iter().all(is_byte) || source.color.max_element() < LEAST_BYTE {
+                return true;
+            }
+            if first.is_some() {
+                more += 1;
+                return true;
+            }
+            let [red, green, blue] = color.map(|value| (value / 255.0 * 1000.0).round() / 1000.0);
+            let message = format!(
+                "{color:?} looks like 0 to 255; colours are linear and 1 is white: write [{red:?}, {green:?}, {blue:?}]"
+            );
+            first = Some(SceneError::value(format!("{}.color", source.key()), message));
+            true
+        });
+        if let (Some(first), 1..) = (&mut first, more) {
+            let _ = write!(first.message, " ({more} more sources have such colours)");
+        }
+        first
+    }
+
+    /// Says that nothing glows.
+    fn darkness(&self) -> Option<SceneError> {
+        let mut first = None;
+        let mut light = (0.0_f64, 0.0_f64);
+        self.all_sources(&mut |source| {
+            first.get_or_insert_with(|| source.key());
+            light = (light.0.min(source.light.0), light.1.max(source.light.1));
+            light.1 <= 0.0
+        });
+        let Some(first) = first else {
+            let message = "the scene has no source of light: the picture is black";
+            return Some(SceneError::value("", message));
+        };
+        let message = match light {
+            (_, most) if most > 0.0 => return None,
+            (0.0, _) => {
+                "gives no light, as all sources do: coefficient, color or intensity is 0, the picture is black"
+            }
+            _ => {
+                "takes light away, as all sources do: coefficients or colours are negative, the picture is black"
+            }
+        };
+        Some(SceneError::value(first, message))
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::image::ImageSize;
+    use crate::scene::{Camera, Curve, Sphere, Torus};
+
+    /// From (0, -4, 0) along +y: the plane is at y = -3, the rays end 15 behind it.
+    pub(in crate::scene) fn scene() -> Scene {
+        let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO));
+        scene.image = ImageSize {
+            width: 8,
+            height: 6,
+        };
+        scene
+    }
+
+    pub(in crate::scene) fn sphere(y: f64) -> Sphere {
+        Sphere {
+            center: DVec3::new(0.0, y, 0.0),
+            ..Sphere::default()
+        }
+    }
+
+    #[track_caller]
+    pub(in crate::scene) fn expect(scene: &Scene, key: &str, words: &str) {
+        scene.validate().unwrap();
+        let found = scene.warnings();
+        let [found] = found.as_slice() else {
+            panic!("{key}: {found:?}");
+        };
+        assert_eq!(found.key, key, "{found}");
+        assert!(found.message.contains(words), "{found}");
+    }
+
+    #[test]
+    fn a_view_in_radians_and_colours_to_255_are_told() {
+        let mut good = scene();
+        good.spheres.push(sphere(0.0));
+        assert_eq!(good.warnings(), []);
+        let mut radians = good.clone();
+        radians.camera.fov_y = 0.8;
+        expect(
+            &radians,
+            "camera.fov_y",
+            "if radians were meant, write 45.8",
+        );
+        let color = |color: [f64; 3]| {
+            let mut scene = good.clone();
+            scene.spheres[0].color = color.into();
+            scene
+        };
+        expect(
+            &color([255.0, 51.0, 0.0]),
+            "sphere[0].color",
+            "write [1.0, 0.2, 0.0]",
+        );
+        for bright in [
+            [16.5, 20.0, 3.0],
+            [12.0, 4.0, 1.0],
+            [400.0, 1.0, 1.0],
+            [-20.0, 30.0, 1.0],
+            [1.0; 3],
+        ] {
+            assert_eq!(color(bright).warnings(), [], "{bright:?}");
+        }
+        let mut many = color([255.0, 0.0, 0.0]);
+        for _ in 0..4 {
+            let again = many.spheres[0].clone();
+            many.spheres.push(again);
+        }
+        expect(
+            &many,
+            "sphere[0].color",
+            "(4 more sources have such colours)",
+        );
+    }
+
+    #[test]
+    fn a_scene_that_gives_no_light_is_told() {
+        let mut dark = scene();
+        expect(&dark, "", "no source of light");
+        dark.spheres.push(Sphere {
+            coefficient: 0.0,
+            ..sphere(0.0)
+        });
+        dark.tori.push(Torus {
+            color: DVec3::ZERO,
+            ..Torus::new(1.0)
+        });
+        expect(&dark, "sphere[0]", "gives no light, as all sources do");
+        dark.tori[0].color = DVec3::new(-1.0, 0.0, 0.0);
+        expect(&dark, "sphere[0]", "takes light away");
+        dark.tori[0].color = DVec3::new(-1.0, 0.0, 0.1);
+        assert_eq!(dark.warnings(), []);
+        let mut curve = scene();
+        let points = [DVec3::ZERO, DVec3::X, DVec3::Z];
+        curve.curves.push(Curve {
+            intensity: Some(vec![0.0; 3]),
+            ..Curve::new(points)
+        });
+        expect(&curve, "curve[0]", "gives no light");
+    }
+}

@@ -1,0 +1,99 @@
+//! What a scene was hardly meant to say is told with its place; the repository's scenes are told nothing.
+
+use std::path::Path;
+
+use crate::common::program::{Folder, expect, stderr};
+use energywave::Scene;
+
+const CAMERA: &str = "[camera]\neye = [0.0, -4.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n";
+
+#[test]
+fn no_scene_of_the_repository_is_warned_of() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let entries = std::fs::read_dir(folder).unwrap();
+    let scenes = entries.map(|entry| entry.unwrap().path());
+    let scenes = scenes.filter(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    let mut count = 0;
+    for path in scenes {
+        let (_, warnings) = Scene::from_file_with_warnings(&path, |_, _| Ok(())).unwrap();
+        assert_eq!(warnings, [], "{}", path.display());
+        count += 1;
+    }
+    assert!(count >= 20, "{count}");
+}
+
+/// Draws a scene; the lines on standard error but for that of the device.
+fn said(name: &str, text: &str) -> Vec<String> {
+    let folder = Folder::new();
+    std::fs::write(folder.path().join(name), text).unwrap();
+    let arguments = [
+        "render",
+        name,
+        "-o",
+        "o.png",
+        "-q",
+        "--device",
+        "reference",
+        "--size",
+        "2x2",
+    ];
+    let output = folder.run(&arguments);
+    expect(&output, 0, "device: ");
+    let said = stderr(&output);
+    let lines = said.lines().filter(|line| !line.starts_with("device: "));
+    lines.map(str::to_owned).collect()
+}
+
+#[test]
+fn warnings_have_file_line_column_and_key_and_are_told_quietly_too() {
+    for (rest, place, words) in [
+        (
+            "fov_y = 0.8\n[[sphere]]\n",
+            "4:9: camera.fov_y",
+            "write 45.8",
+        ),
+        (
+            "[[sphere]]\n[[torus]]\nmajor_radius = 1\ncolor = [255, 128, 0]\n",
+            "7:9: torus[0].color",
+            "write [1.0, 0.502, 0.0]",
+        ),
+        (
+            "[[sphere]]\ncoefficient = 0\n",
+            "4:1: sphere[0]",
+            "gives no light",
+        ),
+        (
+            "[[sphere]]\ncenter = [0, -9, 4]\n",
+            "4:1: sphere[0]",
+            "behind the eye",
+        ),
+        (
+            "[[sphere]]\ncenter = [0, 90, 0]\n",
+            "4:1: sphere[0]",
+            "beyond the end of the rays",
+        ),
+    ] {
+        let lines = said("scene.toml", &format!("{CAMERA}{rest}"));
+        assert_eq!(lines.len(), 1, "{lines:?}");
+        let begin = format!("warning: scene.toml:{place}: ");
+        assert!(
+            lines[0].starts_with(&begin) && lines[0].contains(words),
+            "{lines:?}"
+        );
+    }
+    let two = format!("{CAMERA}fov_y = 1.0\n");
+    let lines = said("scene.toml", &two);
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    assert!(lines[0].contains("camera.fov_y") && lines[1].contains("no source of light"));
+    let json =
+        r#"{"camera": {"eye": [0, -4, 2], "target": [0, 0, 0], "fov_y": 0.8}, "sphere": [{}]}"#;
+    let lines = said("scene.json", json);
+    assert!(
+        lines[0].starts_with("warning: scene.json: camera.fov_y: "),
+        "{lines:?}"
+    );
+    assert_eq!(
+        said("scene.toml", &format!("{CAMERA}fov_y = 40\n[[sphere]]\n")),
+        [""; 0]
+    );
+}
