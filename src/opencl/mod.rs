@@ -50,6 +50,7 @@ pub(crate) use layout::device_struct;
 pub use layout::{DeviceStruct, StructLayout};
 pub use options::RendererOptions;
 pub use program::Program;
+pub(crate) use program::flags_for;
 pub(crate) use source::embed;
 pub use source::{SHARED, SourceFile, Sources};
 pub use uploaded::{Uploaded, UploadedShared};
