@@ -79,6 +79,51 @@ fn present(kinds: &[&str]) -> wave::Present {
     KINDS.map(|kind| kinds.contains(&kind))
 }
 
+/// A program of the wave: which rays its kernel takes, and what it is built for.
+#[derive(Debug, Clone, Copy)]
+pub struct ProgramTask<'a> {
+    /// `tiles`, `render` (every pixel) or `trace` (listed rays).
+    pub kernel: &'a str,
+    /// Kinds of source, by name.
+    pub kinds: &'a [&'a str],
+    /// Of the method `exact`; `None`: Simpson's rule.
+    pub tolerance: Option<f64>,
+    pub has_squares: bool,
+    pub has_depth: bool,
+    /// Rays that a work-item carries side by side.
+    pub lanes: u32,
+    /// Work-items that share a tile.
+    pub workers: u32,
+}
+
+/// Returns the text and the options with which the driver's compiler is given a program, for compilers that run
+/// without a device.
+#[must_use]
+pub fn program_text(program: &ProgramTask<'_>) -> (String, String) {
+    let rule = Rule::of(program.tolerance.unwrap_or(1.0), program.has_squares);
+    let task = wave::Task {
+        method: match program.tolerance {
+            None => wave::Variant::Simpson,
+            Some(_) => wave::Variant::Exact {
+                nodes: rule.nodes,
+                coarse: rule.coarse,
+            },
+        },
+        kinds: present(program.kinds),
+        has_squares: program.has_squares,
+        has_depth: program.has_depth,
+        film: FilmFormat::Floats,
+        rays: match program.kernel {
+            "tiles" => wave::Rays::Tiles,
+            "trace" => wave::Rays::Listed,
+            _ => wave::Rays::Pixels,
+        },
+    };
+    let form = (program.lanes, program.workers);
+    let (_, text, options) = wave::program_text(&task, &rule, form);
+    (text, options)
+}
+
 /// Builds a text that may include files of `cl/`, with the kinds of source that are named; `name` stands for it in the
 /// compiler's log.
 ///

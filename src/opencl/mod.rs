@@ -54,6 +54,7 @@ pub use layout::{DeviceStruct, StructLayout};
 pub use options::RendererOptions;
 pub use pocl::suit_pocl;
 pub use program::Program;
+pub(crate) use program::flags_for;
 pub(crate) use source::embed;
 pub use source::{SHARED, SourceFile, Sources};
 pub use uploaded::{Uploaded, UploadedShared};

@@ -50,7 +50,7 @@ impl Program {
         let lanes = options.lanes.unwrap_or(device.lanes);
         let chosen = &options.compiler_options;
         let environment = std::env::var(OPTIONS_VARIABLE).unwrap_or_default();
-        let flags = format!("-cl-std=CL1.2 -D LANES={lanes}{definitions} {chosen} {environment}");
+        let flags = format!("{} {chosen} {environment}", flags_for(lanes, definitions));
         let flags = flags.trim();
         let record = Record::new(device, &text, flags, options);
         let has_image = ["-D IMAGE", "-D HALVES"]
@@ -133,6 +133,11 @@ impl Program {
         }
         Ok(Kernel::new(kernel, names))
     }
+}
+
+/// Returns what every program is built with, before the options of a caller and of the environment.
+pub(crate) fn flags_for(lanes: u32, definitions: &str) -> String {
+    format!("-cl-std=CL1.2 -D LANES={lanes}{definitions}")
 }
 
 fn build_for(

@@ -6,13 +6,13 @@ use super::kinds::{Present, resolve};
 use super::pack::layout::STRUCTS;
 use super::{Rule, counts, tiles};
 use crate::error::{Error, Result};
-use crate::opencl::{Compute, FilmFormat, Kernel, Program, RendererOptions};
+use crate::opencl::{Compute, FilmFormat, Kernel, Program, RendererOptions, flags_for};
 use crate::scene::CORE_FLOOR;
 use crate::scene::kinds::KIND_COUNT;
 
 /// What a kernel is built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct Task {
+pub(crate) struct Task {
     pub method: Variant,
     /// Which kinds of source the scene has.
     pub kinds: Present,
@@ -26,7 +26,7 @@ pub(super) struct Task {
 
 /// Which rays a kernel takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Rays {
+pub(crate) enum Rays {
     /// Every pixel's.
     Pixels,
     /// A few of every tile, more next to cores.
@@ -37,7 +37,7 @@ pub(super) enum Rays {
 
 /// A way to integrate that has kernels of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Variant {
+pub(crate) enum Variant {
     Simpson,
     Exact {
         /// Of the rule: what its kernels are built with.
@@ -66,13 +66,9 @@ impl Kernels {
         if self.0.contains_key(&task) {
             return Ok(None);
         }
-        let (file, name) = match task.rays {
-            Rays::Pixels => ("wave/render.cl", "render"),
-            Rays::Tiles => ("wave/tiles/tiles.cl", "tiles"),
-            Rays::Listed => ("wave/trace.cl", "trace"),
-        };
-        let text = resolve(file, &task.kinds);
-        let definitions = task_definitions(compute, options, task, rule);
+        let (name, text) = task_text(&task);
+        let workers = tiles::workers(compute.device(), options);
+        let definitions = task_definitions(workers, options.counts_samples, &task, rule);
         let program = Program::build(compute, text, &definitions, options)?;
         self.0.insert(task, program.kernel(name)?);
         Ok(Some(program))
@@ -101,6 +97,17 @@ impl Kernels {
     }
 }
 
+/// Returns a task's kernel as a device's compiler gets it: its name, the resolved text of its program, and the options.
+pub(crate) fn program_text(
+    task: &Task,
+    rule: &Rule,
+    (lanes, workers): (u32, u32),
+) -> (&'static str, String, String) {
+    let (name, text) = task_text(task);
+    let definitions = task_definitions(workers, false, task, rule);
+    (name, text, flags_for(lanes, &definitions))
+}
+
 /// Returns what every program of the wave is built with: the host owns these numbers.
 pub(crate) fn common_definitions(counts_samples: bool) -> String {
     let sizes: String = STRUCTS
@@ -116,13 +123,19 @@ pub(crate) fn common_definitions(counts_samples: bool) -> String {
     format!(" -D CORE_FLOOR={CORE_FLOOR:e}f -D KIND_COUNT={KIND_COUNT}{sizes}{places}{counting}")
 }
 
-fn task_definitions(
-    compute: &Compute,
-    options: &RendererOptions,
-    task: Task,
-    rule: &Rule,
-) -> String {
-    let mut definitions = common_definitions(options.counts_samples);
+/// Returns the name of a task's kernel, and the resolved text of its program.
+fn task_text(task: &Task) -> (&'static str, String) {
+    let (file, name) = match task.rays {
+        Rays::Pixels => ("wave/render.cl", "render"),
+        Rays::Tiles => ("wave/tiles/tiles.cl", "tiles"),
+        Rays::Listed => ("wave/trace.cl", "trace"),
+    };
+    (name, resolve(file, &task.kinds))
+}
+
+/// Returns what that is built with, where `workers` work-items share a tile.
+fn task_definitions(workers: u32, counts_samples: bool, task: &Task, rule: &Rule) -> String {
+    let mut definitions = common_definitions(counts_samples);
     if let Variant::Exact { .. } = task.method {
         definitions += &rule.definitions();
     }
@@ -134,7 +147,7 @@ fn task_definitions(
     }
     definitions += task.film.definitions();
     if task.rays == Rays::Tiles {
-        definitions += &tiles::definitions(tiles::workers(compute.device(), options));
+        definitions += &tiles::definitions(workers);
     }
     definitions
 }

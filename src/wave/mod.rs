@@ -20,7 +20,7 @@ use std::ops::Range;
 
 use opencl3::event::Event;
 
-pub(crate) use kernels::common_definitions;
+pub(crate) use kernels::{Rays, Task, Variant, common_definitions, program_text};
 pub(crate) use kinds::{Present, resolve, resolve_text};
 pub use pace::Split;
 pub use partition::TILE_SHARES;
@@ -35,7 +35,7 @@ use crate::opencl::{Compute, FilmFormat, Handle, RendererOptions, UploadedShared
 use crate::scene::{Method, Ray, Scene, ViewPlane};
 use counts::Counts;
 use dispatch::Launched;
-use kernels::{Kernels, Rays, Task, Variant};
+use kernels::Kernels;
 use lists::Lists;
 use pace::Pace;
 use pack::layout::View;
