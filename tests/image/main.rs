@@ -4,7 +4,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
-mod beams; // compares beams with the lines and points that they are made of
+mod beams;
+mod built; // compares beams with the lines and points that they are made of
 mod depth; // compares occluded images with those of rays that are cut by hand
 mod exact; // holds the method `exact` to every tolerance
 mod figures; // draws every scene by every method in the form of the device
