@@ -4,6 +4,7 @@
 //! part. What stands beside depths has names like theirs: normals and positions have a Z, colours an R.
 
 use super::openexr::ChannelName;
+use crate::shown::shown;
 
 /// How the channel of the depths was found.
 #[derive(Debug, PartialEq)]
@@ -235,7 +236,7 @@ fn unclear(why: &str, all: &[ChannelName]) -> String {
 /// Lists all channels; of many the first.
 pub(super) fn listed(all: &[ChannelName]) -> String {
     const SHOWN: usize = 40;
-    let names: Vec<String> = all.iter().take(SHOWN).map(|c| escaped(&c.full())).collect();
+    let names: Vec<String> = all.iter().take(SHOWN).map(|c| shown(&c.full())).collect();
     let rest = match all.len().saturating_sub(SHOWN) {
         0 => String::new(),
         more => format!(" and {more} more"),
@@ -243,19 +244,8 @@ pub(super) fn listed(all: &[ChannelName]) -> String {
     format!("channels: {}{rest}", names.join(", "))
 }
 
-/// Returns a name of the file or of the user's as a message may show it.
-pub(super) fn escaped(name: &str) -> String {
-    const LONGEST: usize = 60;
-    let mut characters = name.escape_debug();
-    let shown: String = characters.by_ref().take(LONGEST).collect();
-    match characters.next() {
-        None => shown,
-        Some(_) => shown + "…",
-    }
-}
-
 fn quoted(name: &str) -> String {
-    format!("`{}`", escaped(name))
+    format!("`{}`", shown(name))
 }
 
 #[cfg(test)]
@@ -392,6 +382,5 @@ mod tests {
             text.ends_with("c39 and 960 more") && text.len() < 300,
             "{text}"
         );
-        assert_eq!(escaped(&"x".repeat(1000)).chars().count(), 61);
     }
 }

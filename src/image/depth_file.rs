@@ -6,11 +6,12 @@ use exr::image::{AnyChannel, FlatSamples, Layer};
 use exr::prelude::{AnyChannels, Encoding, Image, LayerAttributes, WritableImage};
 
 use super::depth::Origin;
-use super::depth_channel::{Choice, choose, escaped, listed, named};
+use super::depth_channel::{Choice, choose, listed, named};
 use super::openexr::{ChannelId, ChannelName, OpenExr, Plane};
 use super::{DepthImage, DepthOptions, ImageFormat};
 use crate::error::{Error, Result};
 use crate::output::Output;
+use crate::shown::shown;
 
 impl DepthImage {
     /// Reads an OpenEXR image. Where the data window leaves a part of the display window out, nothing hides the light.
@@ -168,7 +169,7 @@ fn refused(fault: &str, origin: &Origin, plane: &Plane) -> String {
         }
         _ => format!("if {lowest} means that nothing is there, give `none = {lowest}`"),
     };
-    format!("channel {}: {fault}; {advice}", escaped(&origin.channel))
+    format!("channel {}: {fault}; {advice}", shown(&origin.channel))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 use super::{Camera, Scene, ViewPlane};
 use crate::image::{DepthAlong, DepthImage, ImageSize};
+use crate::shown::shown;
 
 /// Shares of the depths from which on it is likely that they are in other units. What lies before the plane is black:
 /// no picture is meant to be so by half. A wall may stand behind all that glows.
@@ -50,7 +51,7 @@ impl Scene {
 impl std::fmt::Display for DepthReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if let Some(channel) = &self.channel {
-            write!(f, "channel {}, ", channel.escape_debug())?;
+            write!(f, "channel {}, ", shown(channel))?;
         }
         match self.range {
             Some((nearest, farthest)) => write!(f, "{nearest} to {farthest}, ")?,
@@ -120,7 +121,7 @@ fn warnings(depth: &DepthImage, camera: &Camera, counts: &Counts) -> Vec<String>
     if let (Some(all), Some(channel)) = (depth.doubt(), depth.channel()) {
         found.push(format!(
             "channel {} is taken for the depth because of its name; name it as the depth's `channel` to be sure; {all}",
-            channel.escape_debug()
+            shown(channel)
         ));
     }
     let others = counts.with - counts.zero;

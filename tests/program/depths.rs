@@ -242,6 +242,24 @@ fn every_compression_is_read_but_deep_and_htj2k_which_are_told() {
     for (index, value) in piz.as_slice().iter().enumerate() {
         assert_eq!(*value, 3.0 + ((index % 34) / 8) as f32, "{index}");
     }
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |bytes: &[u8]| {
+        let path = folder.path().join("depth.exr");
+        std::fs::write(&path, bytes).unwrap();
+        let refused = DepthImage::open(path, DepthAlong::Ray);
+        refused.unwrap_err().to_string()
+    };
+    let bytes = std::fs::read(data("exr/zip.exr")).unwrap();
+    for (length, words) in [
+        (0, "not an OpenEXR image"),
+        (100, "its header cannot be read"),
+        (bytes.len() - 1, "cut off"),
+    ] {
+        let message = refused(&bytes[..length]);
+        assert!(message.contains(words), "{length} bytes: {message}");
+    }
+    let png = refused(b"\x89PNG\r\n\x1a\n and more");
+    assert!(png.contains("not an OpenEXR image"), "{png}");
     for (file, words) in [
         ("deep", "its pixels are deep"),
         (

@@ -239,9 +239,8 @@ fn largest_chunk(header: &Header) -> usize {
 
 /// Checks that the memory is there: what the decoder takes and does not get ends the process.
 fn check_memory(bytes: usize) -> Outcome<()> {
-    if let Some(available) = memory::available_bytes().filter(|most| bytes as u64 > *most) {
-        let (needed, available) = (bytes >> 20, available >> 20);
-        return Err(format!("{needed} MiB needed, {available} MiB available"));
+    if let Some(shortage) = memory::shortage(bytes as u64) {
+        return Err(shortage);
     }
     let reserved = Vec::<u8>::new().try_reserve_exact(bytes);
     reserved.map_err(|_| not_granted(bytes))

@@ -93,14 +93,19 @@ impl OpenExr {
         let fail = |reason: Reason| Error::input(path, reason);
         let bytes = read(path)
             .map_err(|error| fail(format!("cannot read: {error}")).caused_by(error))?
-            .ok_or_else(|| fail("not an OpenEXR image: it does not begin as one".to_owned()))?;
+            .ok_or_else(|| {
+                fail(
+                    "not an OpenEXR image: it does not begin as one; write it as OpenEXR"
+                        .to_owned(),
+                )
+            })?;
         let headers = guard::guarded(|| {
             let mut cursor = Cursor::new(bytes.as_slice());
             let meta = MetaData::read_from_buffered(&mut cursor, false).map_err(|e| e.to_string());
             meta.map(|meta| (meta, cursor.position() as usize))
         });
         let (meta, tables) =
-            headers.map_err(|reason| fail(format!("not an OpenEXR image: {reason}")))?;
+            headers.map_err(|reason| fail(format!("its header cannot be read: {reason}")))?;
         let file = Self {
             bytes,
             meta,
