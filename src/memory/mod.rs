@@ -14,6 +14,7 @@ pub(crate) fn total_bytes() -> Option<u64> {
 }
 
 /// Returns the memory that can be taken without swapping and beyond no limit, in bytes.
+#[cfg(feature = "files")]
 pub(crate) fn available_bytes() -> Option<u64> {
     Some(available(Path::new("/"))?.bytes)
 }
@@ -173,6 +174,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg(feature = "files")]
     fn this_machine_tells_its_memory() {
         if !Path::new("/proc/meminfo").exists() {
             return;
