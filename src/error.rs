@@ -12,7 +12,7 @@ pub type Cause = Box<dyn std::error::Error + Send + Sync>;
 
 /// Everything that can go wrong. `Display` gives one message for people: what, where, why, and what to do;
 /// [`Error::kind`] and [`ErrorKind::code`] are for programs. What a message repeats of a file or a path is escaped and
-/// shortened, see [`crate::shown`]; the fields hold it as it is.
+/// shortened, see [`crate::shown()`]; the fields hold it as it is.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -20,7 +20,7 @@ pub fn shown(text: &str) -> String {
 }
 
 /// Returns what a program prints of a text of several lines of our own: control characters but line breaks and tabs are
-/// escaped, as [`shown`] does.
+/// escaped, as [`shown()`] does.
 #[must_use]
 pub fn shown_lines(text: &str) -> String {
     let escape = |c: char| match c {

@@ -174,6 +174,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg(feature = "files")]
     fn this_machine_tells_its_memory() {
         if !Path::new("/proc/meminfo").exists() {
             return;
