@@ -7,8 +7,107 @@ use crate::common::host::Host;
 use energywave::image::DepthAlong;
 use energywave::scene::Method;
 use energywave::verify::built_in_rays;
-use energywave::{Renderer, RendererOptions};
+use energywave::{Renderer, RendererOptions, Scene};
 use opencl3::memory::{CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA};
+
+fn is_simulator() -> bool {
+    common::device().name.contains("Oclgrind")
+}
+
+/// As a GPU does it: a group of one lane each shares a tile.
+fn shared_tiles() -> RendererOptions {
+    let mut options = common::options(1, "");
+    options.tile_workers = Some(16);
+    options
+}
+
+/// How much of the only tile, 64 pixels wide and high, is hidden.
+#[derive(Debug, Clone, Copy)]
+enum Wall {
+    None,
+    /// As smooth as the light: sources may be smooth, too.
+    Slanted,
+    /// Before the projection plane.
+    Near,
+    /// Beyond the rays' ends.
+    Far,
+    Edge,
+}
+
+/// A source of one kind, or of all but curves, whose light is smooth on the tile or is not.
+fn on_one_tile(kind: usize, is_smooth: bool, wall: Wall) -> Scene {
+    let mut scene = common::empty_scene(64, 64);
+    scene.integration.method = Method::default();
+    let aside = if is_smooth { 9.0 } else { 0.1 };
+    match kind {
+        0 => scene.spheres.push(common::sphere([aside, 0.2, 0.1], 1.0)),
+        1 => {
+            let line = common::cylinder([aside, 0.6, 0.2], [0.1, 0.2, 1.0]);
+            scene.cylinders.push(line);
+        }
+        2 => {
+            let beam = common::beam([aside, 0.2, 0.4], [0.3, 0.2, 0.9], Some(0.6));
+            scene.beams.push(beam);
+        }
+        3 => {
+            let ring = common::torus([aside, 0.0, 0.0], [0.1, 0.2, 2.0], 0.9);
+            scene.tori.push(ring);
+        }
+        _ => {
+            let moved = common::CURVE_SHAPES[0].map(|[x, y, z]| [x + aside, y, z]);
+            let series = vec![1.0, 0.2, 0.6, 1.0];
+            scene.curves.push(common::curve(moved, Some(series)));
+        }
+    }
+    let depth = |column: u32, row: u32| {
+        let slanted = 6.0 + 0.002 * f64::from(row) + 0.001 * f64::from(column);
+        match wall {
+            Wall::Near => 1e-3,
+            Wall::Edge if column + row < 60 => 3.0,
+            Wall::Far | Wall::Edge => 1e6,
+            Wall::None | Wall::Slanted => slanted,
+        }
+    };
+    if !matches!(wall, Wall::None) {
+        scene.depth = Some(common::depths(&scene, DepthAlong::Ray, depth));
+    }
+    scene
+}
+
+#[test]
+fn groups_that_share_a_tile_stay_together_in_every_branch() {
+    if !is_simulator() && common::device().tile_workers == 1 {
+        println!("only where work-items share tiles: not checked here");
+        return;
+    }
+    let mut renderer = Renderer::with_options(&common::device(), &shared_tiles()).unwrap();
+    let mut taken = |scene: &Scene| {
+        let image = renderer.render(scene).unwrap();
+        assert!(image.as_slice().iter().all(|value| value.is_finite()));
+        renderer.last_cost().integrals
+    };
+    // Nodes and tests of the tile, and of as many of its sources as pass the first.
+    const NODES: u64 = 16;
+    for kind in 0..5 {
+        for wall in [Wall::None, Wall::Slanted] {
+            let integrals = taken(&on_one_tile(kind, true, wall));
+            println!("kind {kind}, {wall:?}: {integrals}");
+            assert!(integrals >= 2 * NODES, "{kind}, {wall:?}: {integrals}");
+            assert_eq!(integrals % NODES, 0, "a group was parted: {kind}, {wall:?}");
+        }
+    }
+    for (wall, is_smooth) in [
+        (Wall::Near, true),
+        (Wall::Far, true),
+        (Wall::Edge, true),
+        (Wall::Slanted, false),
+    ] {
+        let integrals = taken(&on_one_tile(0, is_smooth, wall));
+        println!("{wall:?}: {integrals}");
+        assert_eq!(integrals == 0, matches!(wall, Wall::Near), "{wall:?}");
+        assert_eq!(integrals % NODES, 0, "a group was parted: {wall:?}");
+    }
+}
 
 #[test]
 fn every_kernel_runs_on_every_lane_width() {
@@ -20,18 +119,15 @@ fn every_kernel_runs_on_every_lane_width() {
         .take(21)
         .map(|known| known.ray)
         .collect();
-    // As a GPU does it: a group of one lane each shares a tile.
-    let mut shared_tiles = common::options(1, "");
-    shared_tiles.tile_workers = Some(16);
     let device = common::device();
-    let is_simulator = device.name.contains("Oclgrind");
+    let is_simulator = is_simulator();
     let mut builds: Vec<RendererOptions> = common::lane_widths()
         .into_iter()
         .filter(|lanes| is_simulator || *lanes == device.lanes)
         .map(|lanes| common::options(lanes, ""))
         .collect();
     // PoCL 3.1 compiles it for hours.
-    builds.extend(is_simulator.then_some(shared_tiles));
+    builds.extend(is_simulator.then(shared_tiles));
     for options in builds {
         let mut renderer = Renderer::with_options(&common::device(), &options).unwrap();
         for method in [Method::simpson(4), Method::default()] {

@@ -50,7 +50,7 @@ INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, 
 #ifdef DEPTH
     if (end_error > 0.0f && !none_is_positive(memory->excess))
         return false;
-    meet(); // all have read the excess before it is written again
+    meet_again();
 #endif
     if (!seems_smooth(task->pass, memory->integrals))
         return false;
