@@ -100,7 +100,7 @@ pub struct ProgramTask<'a> {
 /// without a device.
 #[must_use]
 pub fn program_text(program: &ProgramTask<'_>) -> (String, String) {
-    let rule = Rule::of(program.tolerance.unwrap_or(1.0), program.has_squares);
+    let rule = Rule::of(program.tolerance.unwrap_or(1.0), program.has_squares, false);
     let task = wave::Task {
         method: match program.tolerance {
             None => wave::Variant::Simpson,
