@@ -11,8 +11,8 @@ use super::scenes::HardScene;
 const MOST_PIXELS: f64 = 2e-5;
 const WORST_PIXEL: f64 = 2e-4;
 
-/// Errors are relative to a pixel's light, and where sources cancel, to no less than this share of what they would add up
-/// to if all were positive.
+/// Errors are relative to a pixel's light, and where sources cancel, to no less than this share of what they would add
+/// up to if all were positive.
 const CANCELLED: f64 = 1.0 / 30.0;
 
 /// How far a ray may be off, as a share of a scene's scale: where positions have float32's digits only, and where the

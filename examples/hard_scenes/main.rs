@@ -33,9 +33,9 @@ struct Arguments {
     /// Scenes to draw.
     #[arg(long, default_value_t = 1000)]
     count: u64,
-    /// Draws only the scene of this number.
-    #[arg(long)]
-    only: Option<u64>,
+    /// Draws only the scenes of these numbers.
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    only: Vec<u64>,
     /// Draws only scenes of this family.
     #[arg(long)]
     family: Option<String>,
@@ -85,9 +85,9 @@ fn search(arguments: &Arguments) -> Result<bool> {
         limit.is_some_and(|limit| begun.elapsed() >= limit)
     };
     let mut tallies = vec![Tally::default(); families().len()];
-    let numbers = match arguments.only {
-        Some(number) => number..number + 1,
-        None => arguments.from..arguments.from + arguments.count,
+    let numbers = match arguments.only.is_empty() {
+        true => (arguments.from..arguments.from + arguments.count).collect(),
+        false => arguments.only.clone(),
     };
     for number in numbers {
         let index = number as usize % families().len();
@@ -141,7 +141,7 @@ fn check_scene(
     }
     tally.missing_scenes += usize::from(misses);
     match &arguments.write {
-        Some(folder) if misses || arguments.only.is_some() => {
+        Some(folder) if misses || !arguments.only.is_empty() => {
             write(folder, arguments.seed, number, hard)
         }
         _ => Ok(()),

@@ -39,6 +39,10 @@ INLINE segment_path segment_along(const Ray *const ray, const Sources *const sou
     path.to_last = distance2_to_point(ray, segment->to, segment->to_rest);
     path.over_first = height_over(ray, segment->from, segment->from_rest, direction);
     path.over_last = height_over(ray, segment->to, segment->to_rest, direction);
+    // A ray within one of the planes is level with the other.
+    const intv is_level = (path.over_first.slope == 0.0f) | (path.over_last.slope == 0.0f);
+    path.over_first.slope = select(path.over_first.slope, splat(0.0f), is_level);
+    path.over_last.slope = select(path.over_last.slope, splat(0.0f), is_level);
     path.floor2 = 4.0f * ray->floor2;
     path.is_square = IS_SQUARE(segment);
     return path;
