@@ -15,8 +15,8 @@ use crate::error::{Error, Result};
 pub struct RendererOptions {
     /// Rays that a work-item carries side by side: 1, 4, 8 or 16; `None`: what suits the device.
     pub lanes: Option<u32>,
-    /// Work-items that share a tile, no more than 16 divided by the lanes: 1, 2, 4, 8 or 16; `None`: as many in the form
-    /// of a GPU, 1 in that of a CPU (see [`Device::form`](crate::Device::form)).
+    /// Work-items that share a tile, no more than 16 divided by the lanes: 1, 2, 4, 8 or 16; `None`: as many in the
+    /// form of a GPU, 1 in that of a CPU (see [`Device::form`](crate::Device::form)).
     pub tile_workers: Option<u32>,
     /// Whether the method `exact` counts its samples, for [`FrameCost::samples`](crate::FrameCost::samples).
     pub counts_samples: bool,
