@@ -33,8 +33,8 @@ pub(super) fn most_pixels(sources: u64) -> u32 {
     (48 * (MOST_OPEN_BYTES / bytes_of_tile)).min(1 << 23) as u32
 }
 
-/// Words of 32 sources of one launch, of which a group of work-items holds as many: half a KiB of local memory. A launch
-/// takes one tile at least, with all of its sources.
+/// Words of 32 sources of one launch, of which a group of work-items holds as many: half a KiB of local memory. A
+/// launch takes one tile at least, with all of its sources.
 const MOST_WORDS: u32 = 128;
 
 /// Sources of one launch: always as many, so that those of a larger scene are summed in the same order whatever the
