@@ -7,6 +7,12 @@ use super::partition::{Counts, Part, Place, TILE_SHARES, Work};
 use crate::opencl::DeviceForm;
 use crate::scene::kinds::KIND_COUNT;
 
+/// Samples of a launch that is enqueued before anything was measured: 40 ms on a device of 1e9 a second.
+const FIRST_UNWATCHED: f64 = 4e7;
+
+/// A launch may be longer than the pace by so much, rather than leave a small rest to a second one.
+const MOST_REST: f64 = 1.25;
+
 /// What a launch aims at: on a GPU, since desktop systems reset one after a launch of seconds and draw nothing
 /// meanwhile; elsewhere, where each launch costs about 55 us (PoCL 3.1) and only Ctrl-C waits for it.
 const TARGET_ON_GPU: Duration = Duration::from_millis(40);
@@ -28,6 +34,7 @@ const MOST_GROWTH: f64 = 16.0;
 pub(super) struct Pace {
     target: Duration,
     samples: f64,
+    is_measured: bool,
     kinds: [bool; KIND_COUNT],
     forced: Option<Split>,
 }
@@ -51,6 +58,7 @@ impl Pace {
                 DeviceForm::Cpu => TARGET_ELSEWHERE,
             },
             samples: FIRST_SAMPLES,
+            is_measured: false,
             kinds: [false; KIND_COUNT],
             forced: None,
         }
@@ -71,6 +79,7 @@ impl Pace {
         let kinds = counts.map(|count| count > 0);
         if kinds != self.kinds {
             self.samples = self.samples.min(FIRST_SAMPLES);
+            self.is_measured = false;
             self.kinds = kinds;
         }
     }
@@ -83,6 +92,7 @@ impl Pace {
         }
         // A launch much below the pace says more about the overhead than about the device, unless it took too long.
         if samples > 0.1 * self.samples || time > self.target {
+            self.is_measured = true;
             self.samples = possible.clamp(LEAST_SAMPLES, MOST_GROWTH * self.samples);
         }
     }
@@ -93,7 +103,7 @@ impl Pace {
         let sources = work.source_count.clamp(1, work.most_sources);
         let samples = f64::from(work.node_count) * sources as f64;
         let affordable = self.samples / samples;
-        let pixels = match (&self.forced, f64::from(left) <= 2.0 * affordable) {
+        let pixels = match (&self.forced, f64::from(left) <= MOST_REST * affordable) {
             (Some(split), _) => split.pixels,
             (None, true) => left.max(work.fewest_pixels),
             (None, false) => (affordable as u32).max(work.fewest_pixels),
@@ -103,9 +113,13 @@ impl Pace {
     }
 
     /// Sees to it that a frame whose launches are all enqueued at once has not too many, also before anything was
-    /// measured.
+    /// measured. Even on a device ten times slower than it seems none takes half a second in the form of a GPU, as long
+    /// as the frame takes no more than ten minutes.
     pub(super) fn begin_unwatched(&mut self, work: &Work, pixels: u32) {
         let all = f64::from(work.node_count) * work.source_count as f64 * f64::from(pixels);
+        if !self.is_measured {
+            self.samples = self.samples.max(FIRST_UNWATCHED);
+        }
         self.samples = self.samples.max(all / MOST_LAUNCHES);
     }
 
@@ -130,7 +144,7 @@ impl Pace {
             return part(sources, 0..0, 0..TILE_SHARES);
         }
         let samples = samples * left as f64;
-        let is_whole = samples <= 2.0 * self.samples && self.forced.is_none();
+        let is_whole = samples <= MOST_REST * self.samples && self.forced.is_none();
         if is_whole && pass == 0 && share == 0 {
             return part(left, 0..passes, 0..TILE_SHARES);
         }
@@ -138,26 +152,26 @@ impl Pace {
         let affordable = self.samples / (samples * work.weight(pass)) * f64::from(TILE_SHARES);
         let shares = match &self.forced {
             Some(split) => split.shares.min(shares_left),
-            None if f64::from(shares_left) <= 2.0 * affordable => shares_left,
+            None if f64::from(shares_left) <= MOST_REST * affordable => shares_left,
             None => (affordable as u32).clamp(1, shares_left),
         };
         part(left, pass..pass + 1, share..share + shares)
     }
 
-    /// How many of the next `left` sources to launch that take so many samples each: up to twice the pace, rather than
-    /// a second launch for a small rest.
+    /// How many of the next `left` sources to launch that take so many samples each: up to a quarter
+    /// more than the pace, rather than a second launch for a small rest.
     fn sources(&self, samples: f64, left: u64) -> u64 {
         let affordable = self.samples / samples;
         match &self.forced {
             Some(split) => split.sources.min(left),
-            None if left as f64 <= 2.0 * affordable => left,
+            None if left as f64 <= MOST_REST * affordable => left,
             None => (affordable as u64).clamp(1, left),
         }
     }
 }
 
 /// Launches of a frame that nobody watches, about, at most.
-const MOST_LAUNCHES: f64 = 256.0;
+const MOST_LAUNCHES: f64 = 16384.0;
 
 #[cfg(test)]
 mod tests {
@@ -220,6 +234,52 @@ mod tests {
                 longest <= (0.1_f64).max(one_source),
                 "{pixels} {source_count}: {longest} s"
             );
+        }
+    }
+
+    #[test]
+    fn no_launch_of_a_hosts_frame_takes_half_a_second_on_a_device_ten_times_slower_than_it_seemed()
+    {
+        for (source_count, first_tile_size, most_sources) in [
+            (1, 0, u64::MAX),
+            (4096, 0, u64::MAX),
+            (4096, 256, 3936),
+            (100_000, 256, 3936),
+        ] {
+            let work = Work {
+                node_count: 32,
+                source_count,
+                fewest_pixels: 20_000,
+                grain: if first_tile_size == 0 { 16 } else { 256 * 3840 },
+                most_pixels: 1 << 23,
+                most_sources,
+                first_tile_size,
+            };
+            for seemed in [None, Some(1e9), Some(1e11)] {
+                let mut pace = Pace::new(DeviceForm::Gpu);
+                for _ in 0..10 {
+                    if let Some(rate) = seemed {
+                        pace.measured(pace.samples, Duration::from_secs_f64(pace.samples / rate));
+                    }
+                }
+                let rate = seemed.unwrap_or(1e9) / 10.0;
+                let pixels = 3840 * 2160;
+                // Frames of hours come in launches that are longer than that.
+                let all = 32.0 * source_count as f64 * f64::from(pixels);
+                let longest = 0.5001_f64.max(MOST_REST * all / MOST_LAUNCHES / rate);
+                pace.begin_unwatched(&work, pixels);
+                let first = 0..pace.pixels(&work, pixels);
+                let mut next = Some(Place::default());
+                while let Some(place) = next {
+                    let part = pace.part(&work, &first, place);
+                    let time = part.samples(&work) / rate;
+                    assert!(
+                        time <= longest,
+                        "{seemed:?}, {source_count}: {time} s, {part:?}"
+                    );
+                    next = part.next(&work);
+                }
+            }
         }
     }
 

@@ -179,12 +179,16 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
     const floatv facing = fma(-2.0f * path->bend, offset.y, speed2);
     const floatv climb = fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across);
-    const floatv slid = climb * climb * inverse(max(max(facing, 1e-3f * speed2), 1e-30f));
+    const floatv per_facing = inverse(max(max(facing, 1e-3f * speed2), 1e-30f));
+    const floatv slid = climb * climb * per_facing;
+    // What float32 has missed the nearest point by is no distance from the curve.
+    const floatv behind = fma(offset.x, splat(path->velocity_along), offset.y * velocity_across);
+    const floatv missed = select(splat(0.0f), behind * per_facing, fabs(x) < 0.5f);
     const floatv curvature = max(select(peaks->span2, peaks->span2 - slid, fabs(x) < 0.5f), 1e-6f * peaks->span2);
     const float3v span = {path->along.slope, path->across.slope, path->normal.slope};
-    const floatv slope = dot3(offset, span);
+    const floatv slope = fma(-missed, climb, dot3(offset, span));
     const floatv per_curvature = inverse(curvature);
-    const floatv softened = distance2 + path->softening2;
+    const floatv softened = max(fma(-missed, behind, distance2), 0.0f) + path->softening2;
     const floatv lowest = max(fma(-slope * per_curvature, slope, softened), 0.0f);
     peak->re = -slope * per_curvature;
     const floatv blurred = fma(max(lowest, 1e-3f * softened), per_curvature, 0.5f * path->floor2 * per_span2);
@@ -220,15 +224,21 @@ INLINE void curve_look_ahead(curve_near *const near, const floatv *const left, c
     near->counts.three = any_lane(has_three);
 }
 
-// Improves a nearest point between the ends by a Newton step on the derivative of the distance: seen from the core
-// close by, that has more digits than the cubic.
-INLINE floatv polished(const curve_path *const path, const curve_point *const point, const floatv x) {
+// Improves a nearest point between the ends, and its squared distance, by a Newton step on the derivative of the
+// distance: seen from the core close by, that has more digits than the cubic.
+INLINE floatv polished(const curve_path *const path, const curve_point *const point, const floatv x,
+                       floatv *const distance2) {
     const curve_offset offset = offset_from_curve(path, point, x);
     const floatv velocity_across = curve_velocity_across(path, x);
     const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
     const floatv facing = max(fma(-2.0f * path->bend, offset.across, speed2), max(0.1f * speed2, 1e-30f));
     const floatv behind = fma(offset.along, path->velocity_along, offset.across * velocity_across);
-    return select(x, clamp(fma(behind, inverse(facing), x), -0.5f, 0.5f), fabs(x) < 0.5f);
+    // The step is too small for the digits of x.
+    const floatv step = clamp(behind * inverse(facing), -0.5f - x, 0.5f - x);
+    const floatv gained = step * fma(-facing, step, 2.0f * behind);
+    const intv is_inner = fabs(x) < 0.5f;
+    *distance2 = max(*distance2 - select(splat(0.0f), max(gained, 0.0f), is_inner), 0.0f);
+    return select(x, x + step, is_inner);
 }
 
 // Returns the field at s = base + x.
@@ -237,10 +247,8 @@ INLINE floatv curve_near_field(curve_near *const near, const floatv x) {
     point.core = near->core;
     floatv distance2;
     floatv nearest = nearest_of_roots(&near->path, &point, near->counts, &distance2);
-    if (near->is_polished) {
-        nearest = polished(&near->path, &point, nearest);
-        distance2 = min(distance2, curve_distance2(&near->path, &point, nearest));
-    }
+    if (near->is_polished)
+        nearest = polished(&near->path, &point, nearest, &distance2);
     const floatv per_distance = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
     near->seen = nearest;
     near->plain = profiled(per_distance, near->path.is_square);
