@@ -7,6 +7,27 @@
 #define INLINE __attribute__((always_inline))
 #endif
 
+// For what is long, taken in several places, and not once a sample: copies cost compilers half their time and GPUs
+// registers, and save nothing.
+#ifndef CALL
+#define CALL __attribute__((noinline))
+#endif
+
+// Integrals along a ray: a kernel that takes them in several places has them as calls, -D PER_RAY=CALL. Intel's
+// compiler for GPUs keeps more than it can hold across them, and decides itself. What is short is copied on GPUs, where
+// a ray would have to lie in memory.
+#ifndef PER_RAY
+#define PER_RAY INLINE
+#elif LANES == 1 && defined(cl_intel_subgroups)
+#undef PER_RAY
+#define PER_RAY
+#endif
+#if LANES == 1
+#define PER_RAY_IF_WIDE INLINE
+#else
+#define PER_RAY_IF_WIDE PER_RAY
+#endif
+
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 

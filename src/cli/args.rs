@@ -130,7 +130,7 @@ pub struct DeviceArgument {
     /// Rays that a work-item carries side by side: 1, 4, 8 or 16 [default: what suits the device]
     #[arg(long, value_name = "N", hide_short_help = true)]
     pub lanes: Option<u32>,
-    /// Work-items that share a tile, at most 16 divided by the lanes: 1, 2, 4, 8 or 16 [default: what suits the device]
+    /// Work-items that share a tile, at most 16 divided by the lanes, or 32 of one [default: what suits the device]
     #[arg(long, value_name = "N", hide_short_help = true)]
     pub tile_workers: Option<u32>,
 }

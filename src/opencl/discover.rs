@@ -117,6 +117,8 @@ pub struct OpenClDevice {
     pub lanes: u32,
     /// Work-items of a group at most.
     pub most_workers: u32,
+    /// Work-items that a GPU runs in step; 0 where the driver does not say, and on other devices.
+    pub in_step: u32,
     /// Whether it works in the host's own memory.
     pub shares_host_memory: bool,
     /// Whether it is a simulator, which is never chosen by default.
@@ -264,6 +266,10 @@ fn inspect(
             DeviceForm::Cpu => width,
         },
         most_workers: u32::try_from(handle.max_work_group_size().ok()?).unwrap_or(u32::MAX),
+        in_step: match device_type {
+            DeviceType::Gpu => in_step(&handle),
+            _ => 0,
+        },
         form,
         known_fault: absent::known_fault(&platform, &driver),
         driver,
@@ -273,6 +279,16 @@ fn inspect(
         platform_version,
         handle,
     })
+}
+
+/// Returns the work-items that a GPU runs in step: OpenCL 3.0 has a question for it, drivers of 1.2 one of their own.
+fn in_step(handle: &ClDevice) -> u32 {
+    let multiple = handle.preferred_work_group_size_multiple().ok();
+    let multiple = multiple.and_then(|multiple| u32::try_from(multiple).ok());
+    let multiple = multiple.or_else(|| handle.wrap_size_nv().ok());
+    multiple
+        .or_else(|| handle.wavefront_width_amd().ok())
+        .unwrap_or(0)
 }
 
 /// Returns the greatest lane width of the kernels that is no wider than the device's vectors.

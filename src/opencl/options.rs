@@ -16,8 +16,9 @@ use crate::error::{Error, Result};
 pub struct RendererOptions {
     /// Rays that a work-item carries side by side: 1, 4, 8 or 16; `None`: what suits the device.
     pub lanes: Option<u32>,
-    /// Work-items that share a tile, no more than 16 divided by the lanes: 1, 2, 4, 8 or 16; `None`: as many in the
-    /// form of a GPU, 1 in that of a CPU (see [`Device::form`](crate::Device::form)).
+    /// Work-items that share a tile, no more than 16 divided by the lanes, or 32 of one lane: 1, 2, 4, 8, 16 or 32;
+    /// `None`: 32 in the form of a GPU if it runs as many in step, else 16, 1 in that of a CPU (see
+    /// [`Device::form`](crate::Device::form)).
     pub tile_workers: Option<u32>,
     /// Whether the method `exact` counts its samples, for [`FrameCost::samples`](crate::FrameCost::samples).
     pub counts_samples: bool,
@@ -44,8 +45,8 @@ impl RendererOptions {
             (Some(lanes), _) if ![1, 4, 8, 16].contains(&lanes) => {
                 wrong("lanes", lanes, "1, 4, 8 or 16")
             }
-            (_, Some(workers)) if ![1, 2, 4, 8, 16].contains(&workers) => {
-                wrong("work-items a tile", workers, "1, 2, 4, 8 or 16")
+            (_, Some(workers)) if ![1, 2, 4, 8, 16, 32].contains(&workers) => {
+                wrong("work-items a tile", workers, "1, 2, 4, 8, 16 or 32")
             }
             _ => Ok(()),
         }

@@ -57,7 +57,7 @@ const PLACE: usize = 2;
 /// Returns definitions for the kernels' compiler: calls instead of copies of what is needed in several places.
 pub(super) fn definitions(workers: u32) -> String {
     format!(
-        " -D PER_RAY= -D MOST_WORDS={MOST_WORDS} -D TILE_WORKERS={workers} -D TILE_SHARES={TILE_SHARES}u"
+        " -D PER_RAY=CALL -D MOST_WORDS={MOST_WORDS} -D TILE_WORKERS={workers} -D TILE_SHARES={TILE_SHARES}u"
     )
 }
 
@@ -155,11 +155,16 @@ pub(super) fn passes(
         .collect()
 }
 
-/// Returns the work-items of a group, which share the 16 nodes of a tile: no more than the device lets a group have.
+/// Returns the work-items of a group, which share the 16 nodes of a tile: 32, nodes and tests side by side, where the
+/// device runs as many in step, for half of them would idle; no more than it lets a group have.
 pub(crate) fn workers(device: &OpenClDevice, options: &RendererOptions) -> u32 {
-    let most = 16 / options.lanes.unwrap_or(device.lanes);
+    let most = match options.lanes.unwrap_or(device.lanes) {
+        1 => 32,
+        lanes => 16 / lanes,
+    };
     let suitable = match device.form {
-        DeviceForm::Gpu => most,
+        DeviceForm::Gpu if device.in_step >= 32 => most,
+        DeviceForm::Gpu => most.min(16),
         DeviceForm::Cpu => 1,
     };
     let wanted = options.tile_workers.unwrap_or(suitable).min(most);

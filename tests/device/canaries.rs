@@ -140,7 +140,7 @@ fn to_half(value: f32) -> u16 {
 fn nothing_is_written_behind_the_image() {
     let exact = Rule::of(1e-3, false, false).definitions();
     let tiles = format!(
-        "{exact} -D PER_RAY= -D MOST_WORDS=4 -D TILE_WORKERS=1 -D TILE_SHARES={TILE_SHARES}u"
+        "{exact} -D PER_RAY=CALL -D MOST_WORDS=4 -D TILE_WORKERS=1 -D TILE_SHARES={TILE_SHARES}u"
     );
     for lanes in lane_widths() {
         for (kernel, method) in [("render", ""), ("render", &exact), ("tiles", &tiles)] {

@@ -122,10 +122,10 @@ fn options_that_no_kernel_can_be_built_for_are_refused_before_a_frame() {
         let words = format!("{lanes} lanes; 1, 4, 8 or 16");
         assert!(error.to_string().contains(&words), "{error}");
     }
-    for workers in [0, 3, 32] {
+    for workers in [0, 3, 64] {
         let error = with(None, Some(workers)).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Unsupported);
-        let words = format!("{workers} work-items a tile; 1, 2, 4, 8 or 16");
+        let words = format!("{workers} work-items a tile; 1, 2, 4, 8, 16 or 32");
         assert!(error.to_string().contains(&words), "{error}");
     }
     // Twice: a list of devices asks each.

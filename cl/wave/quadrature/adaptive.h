@@ -17,6 +17,16 @@
 #define DOUBT 30.0f
 #define FIRST_ESTIMATE 0.25f
 
+// Pairs of nodes whose fields are taken side by side: all for vectors, whose lanes do not hide what an operation waits
+// for; one where work-items do that and registers are few.
+#ifndef PAIRS_AT_ONCE
+#if LANES == 1
+#define PAIRS_AT_ONCE 1
+#else
+#define PAIRS_AT_ONCE GAUSS_PAIRS
+#endif
+#endif
+
 typedef struct {
     KIND_near near;
     Panel map;
@@ -41,39 +51,44 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
     const float null_even[GAUSS_PAIRS] = GAUSS_NULL_EVEN;
     const float null_odd[GAUSS_PAIRS] = GAUSS_NULL_ODD;
     const Panel *const map = &panel->map;
-    // All nodes first, then the field at all of them: chains of operations that do not wait for each other.
-    floatv right_s[GAUSS_PAIRS], left_s[GAUSS_PAIRS], right_v[GAUSS_PAIRS], left_v[GAUSS_PAIRS];
-#pragma unroll
-    for (int k = 0; k < GAUSS_PAIRS; ++k) {
-        const floatv grown = power_of_two(map->half_length * node[k]), shrunk = coarse_inverse(grown);
-        const floatv right_up = map->rising * grown, right_down = map->falling * shrunk;
-        const floatv left_up = map->rising * shrunk, left_down = map->falling * grown;
-        right_s[k] = parameter_of(map, map->middle + (right_up - right_down));
-        left_s[k] = parameter_of(map, map->middle + (left_up - left_down));
-        right_v[k] = right_up + right_down;
-        left_v[k] = left_up + left_down;
-    }
-#if KIND_HAS(look_ahead)
-    KIND_look_ahead(&panel->near, left_s, right_s, GAUSS_PAIRS);
-#endif
     floatv sum = splat(0.0f), even = splat(0.0f), odd = splat(0.0f);
 #if KIND_HAS(jumps)
     KIND_view view = KIND_view_from(peaks, panel->from, panel->to);
 #endif
+#if PAIRS_AT_ONCE == 1
+#pragma unroll 1
+#endif
+    for (int begin = 0; begin < GAUSS_PAIRS; begin += PAIRS_AT_ONCE) {
+        // All nodes first, then the field at all of them: chains of operations that do not wait for each other.
+        floatv right_s[PAIRS_AT_ONCE], left_s[PAIRS_AT_ONCE], right_v[PAIRS_AT_ONCE], left_v[PAIRS_AT_ONCE];
 #pragma unroll
-    for (int k = 0; k < GAUSS_PAIRS; ++k) {
-        const floatv right = right_v[k] * KIND_near_field(&panel->near, right_s[k]);
-#if KIND_HAS(jumps)
-        KIND_see(peaks, &view, &view.right, &panel->near, right_v[k] * weight[k], k == 0);
+        for (int k = 0; k < PAIRS_AT_ONCE; ++k) {
+            const floatv grown = power_of_two(map->half_length * node[begin + k]), shrunk = coarse_inverse(grown);
+            const floatv right_up = map->rising * grown, right_down = map->falling * shrunk;
+            const floatv left_up = map->rising * shrunk, left_down = map->falling * grown;
+            right_s[k] = parameter_of(map, map->middle + (right_up - right_down));
+            left_s[k] = parameter_of(map, map->middle + (left_up - left_down));
+            right_v[k] = right_up + right_down;
+            left_v[k] = left_up + left_down;
+        }
+#if KIND_HAS(look_ahead)
+        KIND_look_ahead(&panel->near, left_s, right_s, PAIRS_AT_ONCE);
 #endif
-        const floatv left = left_v[k] * KIND_near_field(&panel->near, left_s[k]);
+#pragma unroll
+        for (int k = 0; k < PAIRS_AT_ONCE; ++k) {
+            const floatv right = right_v[k] * KIND_near_field(&panel->near, right_s[k]);
 #if KIND_HAS(jumps)
-        KIND_see(peaks, &view, &view.left, &panel->near, left_v[k] * weight[k], k == 0);
+            KIND_see(peaks, &view, &view.right, &panel->near, right_v[k] * weight[begin + k], begin + k == 0);
 #endif
-        const floatv both = right + left;
-        sum = fma(both, splat(weight[k]), sum);
-        even = fma(both, splat(null_even[k]), even);
-        odd = fma(right - left, splat(null_odd[k]), odd);
+            const floatv left = left_v[k] * KIND_near_field(&panel->near, left_s[k]);
+#if KIND_HAS(jumps)
+            KIND_see(peaks, &view, &view.left, &panel->near, left_v[k] * weight[begin + k], begin + k == 0);
+#endif
+            const floatv both = right + left;
+            sum = fma(both, splat(weight[begin + k]), sum);
+            even = fma(both, splat(null_even[begin + k]), even);
+            odd = fma(right - left, splat(null_odd[begin + k]), odd);
+        }
     }
     const floatv scale = LN_2 * decay.strength * map->half_length;
     const floatv middle = panel->base + parameter_of(map, map->middle + (map->rising - map->falling));
@@ -94,6 +109,23 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
 INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold, const floatv cut,
                             floatv *const integral) {
     const floatv end = peaks->ray->end;
+#if LANES == 1
+    // One after the other, from one copy of the code: other work-items work while one waits.
+    floatv unresolved2 = 0.0f;
+    *integral = 0.0f;
+#pragma unroll 1
+    for (int k = 0; k < 2; ++k) {
+        const floatv from = k == 0 ? 0.0f : cut, to = k == 0 ? cut : end;
+        if (is_empty_panel(decay, from, to))
+            continue;
+        KIND_panel panel = KIND_open_panel(peaks, decay, from, to);
+        const PanelSum sum = KIND_sum_panel(peaks, decay, &panel);
+        *integral += sum.integral;
+        unresolved2 = max(unresolved2, sum.unresolved2);
+    }
+    const floatv allowed = threshold * *integral;
+    return !(unresolved2 > allowed * allowed);
+#else
     const intv has_first = !is_empty_panel(decay, splat(0.0f), cut), has_second = !is_empty_panel(decay, cut, end);
     const floatv first_end = select(splat(1.0f), cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
     const floatv second_end = select(splat(1.0f), end, has_second);
@@ -106,12 +138,8 @@ INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
     const intv is_rough = ((of_first.unresolved2 > allowed * allowed) & has_first) |
                           ((of_second.unresolved2 > allowed * allowed) & has_second);
     return !any_lane(is_rough);
-}
 #endif
-
-// A kernel that takes integrals in several places may have them as calls: -D PER_RAY=
-#ifndef PER_RAY
-#define PER_RAY INLINE
+}
 #endif
 
 PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources, const uint index,

@@ -33,8 +33,8 @@ floatv middle_of(const floatv n0, const floatv n1) {
 
 // Integrates where the ray comes closer to the core than the floor of all distances, within which the field is
 // constant: a ray in a million. So short a part has no digits left in s, only in x = slope s + offset.
-floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay, const Stretch stretch,
-                  const floatv x0, const floatv x1, const uint is_square) {
+CALL floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay, const Stretch stretch,
+                       const floatv x0, const floatv x1, const uint is_square) {
     const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
     const floatv reach = 0.5f * twice_sqrt(max(floor2 - distance2->least, 1e-36f));
     const floatv x_begin = clamp(-reach, x0, x1), x_end = clamp(reach, x0, x1);
@@ -49,8 +49,15 @@ floatv with_floor(const Quadratic *const distance2, const floatv floor2, const D
     const floatv inside = decay.beta > 0.0f ? length * n0 * n1 * decay.per_beta : length;
     const floatv light = fma(after.light_from - before.light_to, middle_of(n0, n1), before.light_to);
     const floatv field = profiled(0.5f * twice_inverse_sqrt_(floor2), is_square);
-    return without_floor(distance2, decay, before, x0, x_begin, is_square) + inside * light * field +
-           without_floor(distance2, decay, after, x_end, x1, is_square);
+    floatv integral = inside * light * field;
+    Stretch side = before;
+    floatv side_x0 = x0, side_x1 = x_begin;
+#pragma unroll 1
+    for (uint k = 0; k < 2; ++k) {
+        integral += without_floor(distance2, decay, side, side_x0, side_x1, is_square);
+        side = after, side_x0 = x_end, side_x1 = x1;
+    }
+    return integral;
 }
 
 // Integrates over a stretch. Lengths are doubled, the integral is not.

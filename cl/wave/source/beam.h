@@ -39,7 +39,7 @@ typedef struct {
     uint is_square;
 } beam_path;
 
-INLINE beam_path beam_along(const Ray *const ray, const Sources *const sources, const uint index) {
+PER_RAY_IF_WIDE beam_path beam_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Beam *const beam = &sources->beam_list[index];
     const fine3v direction = fine3(beam->direction, beam->direction_rest);
     beam_path path;
@@ -67,8 +67,8 @@ floatv beam_field(const beam_path *const path, const floatv s) {
 }
 
 // Returns the integral, with the coefficients in it.
-INLINE floatv beam_integral(const Ray *const ray, const Sources *const sources, const uint index,
-                            const Quadrature *const quadrature) {
+PER_RAY_IF_WIDE floatv beam_integral(const Ray *const ray, const Sources *const sources, const uint index,
+                                     const Quadrature *const quadrature) {
     const beam_path path = beam_along(ray, sources, index);
     const Decay decay = quadrature->decay;
     const Cut begin = cut_at(splat(0.0f)), end = cut_at(ray->end);

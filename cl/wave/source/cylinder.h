@@ -25,7 +25,7 @@ typedef struct {
     uint is_square;
 } cylinder_path;
 
-INLINE cylinder_path cylinder_along(const Ray *const ray, const Sources *const sources, const uint index) {
+PER_RAY_IF_WIDE cylinder_path cylinder_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Cylinder *const cylinder = &sources->cylinder_list[index];
     const Quadratic distance2 =
         distance2_to_line(ray, cylinder->point, cylinder->point_rest, cylinder->direction, cylinder->direction_rest);
@@ -37,8 +37,8 @@ floatv cylinder_field(const cylinder_path *const path, const floatv s) {
     return profiled(twice_inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2)), path->is_square);
 }
 
-INLINE floatv cylinder_integral(const Ray *const ray, const Sources *const sources, const uint index,
-                                const Quadrature *const quadrature) {
+PER_RAY_IF_WIDE floatv cylinder_integral(const Ray *const ray, const Sources *const sources, const uint index,
+                                         const Quadrature *const quadrature) {
     const cylinder_path path = cylinder_along(ray, sources, index);
     const Stretch all = evenly_lit(splat(0.0f), ray->end);
     return integral_over(all, &path.distance2, path.floor2, quadrature->decay, path.is_square);

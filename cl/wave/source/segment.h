@@ -29,7 +29,7 @@ typedef struct {
     uint is_square;
 } segment_path;
 
-INLINE segment_path segment_along(const Ray *const ray, const Sources *const sources, const uint index) {
+PER_RAY_IF_WIDE segment_path segment_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Segment *const segment = &sources->segment_list[index];
     const fine3v direction = fine3(segment->direction, segment->direction_rest);
     segment_path path;
@@ -63,8 +63,8 @@ INLINE Quadratic segment_select(const Quadratic a, const Quadratic b, const intv
     return q;
 }
 
-INLINE floatv segment_integral(const Ray *const ray, const Sources *const sources, const uint index,
-                               const Quadrature *const quadrature) {
+PER_RAY_IF_WIDE floatv segment_integral(const Ray *const ray, const Sources *const sources, const uint index,
+                                        const Quadrature *const quadrature) {
     const segment_path path = segment_along(ray, sources, index);
     const Decay decay = quadrature->decay;
     const intv is_falling = path.over_first.slope <= -1e-30f;

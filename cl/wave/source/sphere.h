@@ -34,8 +34,8 @@ floatv sphere_field(const sphere_path *const path, const floatv s) {
     return profiled(twice_inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2)), path->is_square);
 }
 
-INLINE floatv sphere_integral(const Ray *const ray, const Sources *const sources, const uint index,
-                              const Quadrature *const quadrature) {
+PER_RAY_IF_WIDE floatv sphere_integral(const Ray *const ray, const Sources *const sources, const uint index,
+                                       const Quadrature *const quadrature) {
     const sphere_path path = sphere_along(ray, sources, index);
     const Stretch all = evenly_lit(splat(0.0f), ray->end);
     return integral_over(all, &path.distance2, path.floor2, quadrature->decay, path.is_square);

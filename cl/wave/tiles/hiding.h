@@ -99,14 +99,13 @@ DepthScale depth_scale(const View *const view, const Ray *const ray) {
     return scale;
 }
 
-// Returns the least of what the work-items of a group show for their rays.
+// Returns the least of what the work-items of a group show.
 float least_shown(const floatv value, __local float *const values) {
     meet();
-    for (uint round = 0; round < TILE_ROUNDS; ++round)
-        show(value, first_ray(round), values);
+    show(value, first_ray(0), values);
     meet();
     float least = values[0];
-    for (uint ray = 1; ray < TILE_RAYS; ++ray)
+    for (uint ray = 1; ray < ROUND_RAYS; ++ray)
         least = min(least, values[ray]);
     return least;
 }
@@ -122,7 +121,7 @@ INLINE Hiding hiding_of_tile(const Screen *const screen, const TilePass *const p
                                min(pass->size, view->width - tile->column), min(pass->size, end_row - tile->row)};
     floatv first_end = splat(INFINITY), last_end = splat(0.0f), growth = splat(0.0f);
     for (uint round = 0; round < TILE_ROUNDS; ++round) {
-        const DepthScale scale = depth_scale(view, &rays->nodes[round]);
+        const DepthScale scale = depth_scale(view, &rays->rays[round]);
         first_end = min(first_end, scale.end), last_end = max(last_end, scale.end), growth = max(growth, scale.growth);
     }
     const DepthRange range = range_of_depths(&depths);
@@ -135,7 +134,7 @@ INLINE Hiding hiding_of_tile(const Screen *const screen, const TilePass *const p
     hiding.end_error = 1.0f;
     if (farthest >= least_shown(first_end, values) - margin)
         return hiding;
-    for (uint round = 0; round < TILE_ROUNDS; ++round) {
+    for (uint round = 0; round < TILE_ROUNDS && is_node(first_ray(round)); ++round) {
         const uintv ray = first_ray(round) + LANE_NUMBERS;
         const uintv column = tile->column + node_place(pass, ray & 3u), row = tile->row + node_place(pass, ray >> 2u);
         show(depth_of_pixel(screen, column, row), first_ray(round), nodes);

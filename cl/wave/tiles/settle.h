@@ -15,8 +15,8 @@ INLINE floatv KIND_at_end(const Ray *const ray, const Sources *const sources, co
 INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, const float end_error, const uint index,
                         __local TileMemory *const memory, uint *const integrals) {
     meet();
-    for (uint round = 0; round < TILE_ROUNDS; ++round) {
-        const Clearance clearance = KIND_clearance(&rays->nodes[round], task->sources, index, task->pass->pixel_step);
+    for (uint round = 0; round < TILE_ROUNDS && is_node(first_ray(round)); ++round) {
+        const Clearance clearance = KIND_clearance(&rays->rays[round], task->sources, index, task->pass->pixel_step);
         const float least = LEAST_CLEARANCE * (float)task->pass->size;
         show(least * least - clearance.distance2, first_ray(round), memory->excess);
 #if KIND_HAS(parts)
@@ -32,39 +32,43 @@ INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, 
         return false;
 #endif
     meet();
-    for (uint round = 0; round < TILE_ROUNDS; ++round) {
-        const floatv integral = KIND_integral(&rays->nodes[round], task->sources, index, task->quadrature);
+    for (uint round = 0; round < ROUNDS; ++round) {
+        const Ray *const ray = &rays->rays[round];
+        const floatv integral = KIND_integral(ray, task->sources, index, task->quadrature);
         show(integral, first_ray(round), memory->integrals);
         *integrals += LANES;
 #ifdef DEPTH
-        if (end_error > 0.0f) {
-            const floatv at_end = KIND_at_end(&rays->nodes[round], task->sources, index);
-            const floatv light_at_end = at_end * decay_at(task->quadrature->decay, rays->nodes[round].end);
+        if (end_error > 0.0f && round < TILE_ROUNDS && is_node(first_ray(round))) {
+            const floatv at_end = KIND_at_end(ray, task->sources, index);
+            const floatv light_at_end = at_end * decay_at(task->quadrature->decay, ray->end);
             const floatv excess =
                 fma(splat(END_ERROR_WEIGHT * end_error), fabs(light_at_end), -MOST_ERROR(task->pass) * fabs(integral));
             show(excess, first_ray(round), memory->excess);
         }
 #endif
-    }
-    meet();
+        if (round != TILE_ROUNDS - 1u)
+            continue;
+        meet();
 #ifdef DEPTH
-    if (end_error > 0.0f && !none_is_positive(memory->excess))
-        return false;
-    meet_again();
+        if (end_error > 0.0f && !none_is_positive(memory->excess))
+            return false;
+        meet_again();
 #endif
-    if (!seems_smooth(task->pass, memory->integrals))
-        return false;
+        if (!seems_smooth(task->pass, memory->integrals))
+            return false;
+    }
     for (uint round = 0; round < TILE_ROUNDS; ++round) {
-        const floatv truth = KIND_integral(&rays->tests[round], task->sources, index, task->quadrature);
+        const uint first = first_ray(round + FIRST_TEST_ROUND);
+        const floatv truth = shown(first, memory->integrals);
         const floatv seen = interpolate(memory->integrals, &rays->down[round], &rays->across[round]);
-        show(fabs(seen - truth) - MOST_ERROR(task->pass) * fabs(truth), first_ray(round), memory->excess);
-        *integrals += LANES;
+        if (first >= TILE_RAYS)
+            show(fabs(seen - truth) - MOST_ERROR(task->pass) * fabs(truth), first - TILE_RAYS, memory->excess);
     }
     meet();
     if (!none_is_positive(memory->excess))
         return false;
     const float4 emission = KIND_emission(task->sources, index);
-    for (uint round = 0; round < TILE_ROUNDS; ++round)
+    for (uint round = 0; round < TILE_ROUNDS && is_node(first_ray(round)); ++round)
         add_light(emission, shown(first_ray(round), memory->integrals), first_ray(round), memory->light);
     return true;
 }

@@ -8,9 +8,21 @@
 
 #define NODES_A_SIDE 4
 #define TILE_RAYS 16u
-#define TILE_ROUNDS (TILE_RAYS / (LANES * TILE_WORKERS))
 #define BLOCK_WIDTH 8u
-#define BLOCK_HEIGHT 2u
+
+// Rays that a group takes in a round: 16, or 32, a tile's nodes and its tests side by side. The tests are wasted where
+// the nodes fail, on work-items that would have waited.
+#if LANES * TILE_WORKERS > 16
+#define ROUND_RAYS 32u
+#else
+#define ROUND_RAYS (LANES * TILE_WORKERS)
+#endif
+#define ALL_RAYS (2u * TILE_RAYS)               // the nodes, then the tests
+#define ROUNDS (ALL_RAYS / ROUND_RAYS)          // of all rays
+#define TILE_ROUNDS ((ROUNDS + 1u) / 2u)        // of the nodes, or of the tests
+#define FIRST_TEST_ROUND (ROUNDS - TILE_ROUNDS) // in which the tests begin
+#define BLOCK_HEIGHT (ROUND_RAYS > TILE_RAYS ? 4u : 2u)
+#define BLOCK_ROUNDS (BLOCK_WIDTH * BLOCK_HEIGHT / ROUND_RAYS)
 
 // What the work-items of a group show each other.
 #if TILE_WORKERS > 1
@@ -108,23 +120,31 @@ INLINE floatv interpolate(__local const float *const values, const Basis *const 
     return interpolate_across(row, across);
 }
 
-// The rays of a tile: through its nodes, and through the points where interpolation is tested, with the weights of the
+// The rays of a tile: through its nodes, then through the points where interpolation is tested, with the weights of the
 // nodes there.
 typedef struct {
-    Ray nodes[TILE_ROUNDS], tests[TILE_ROUNDS];
+    Ray rays[ROUNDS];
     Basis across[TILE_ROUNDS], down[TILE_ROUNDS];
 } TileRays;
 
+// Returns whether a ray of this work-item is a node's, in a round that has nodes.
+bool is_node(const uint ray) {
+    return ROUND_RAYS <= TILE_RAYS || ray < TILE_RAYS;
+}
+
 INLINE TileRays rays_of_tile(const Screen *const screen, const TilePass *const pass, const Tile *const tile) {
     TileRays rays;
-    for (uint round = 0; round < TILE_ROUNDS; ++round) {
-        const uintv ray = first_ray(round) + LANE_NUMBERS, column = ray & 3u, row = ray >> 2u;
-        rays.nodes[round] =
-            ray_through(screen, tile->column + node_place(pass, column), tile->row + node_place(pass, row));
-        const uintv test_column = test_place(pass, ray, 1u), test_row = test_place(pass, ray, 7u);
-        rays.tests[round] = ray_through(screen, tile->column + test_column, tile->row + test_row);
-        rays.across[round] = basis_at(pass, test_column);
-        rays.down[round] = basis_at(pass, test_row);
+    for (uint round = 0; round < ROUNDS; ++round) {
+        const uint first = first_ray(round);
+        const uintv ray = (first & (TILE_RAYS - 1u)) + LANE_NUMBERS;
+        const bool is_test = first >= TILE_RAYS;
+        const uintv column = is_test ? test_place(pass, ray, 1u) : node_place(pass, ray & 3u);
+        const uintv row = is_test ? test_place(pass, ray, 7u) : node_place(pass, ray >> 2u);
+        rays.rays[round] = ray_through(screen, tile->column + column, tile->row + row);
+        if (round >= FIRST_TEST_ROUND) {
+            rays.across[round - FIRST_TEST_ROUND] = basis_at(pass, column);
+            rays.down[round - FIRST_TEST_ROUND] = basis_at(pass, row);
+        }
     }
     return rays;
 }

@@ -22,10 +22,11 @@ typedef struct {
 // What a group of work-items holds of a tile. Light is red, green and blue at 16 nodes.
 #define LIGHT_OF_TILE (3u * TILE_RAYS)
 typedef struct {
-    float seen[PLACES_SEEN][TILE_RAYS], integrals[TILE_RAYS]; // of one source at the nodes
-    float excess[TILE_RAYS];                                  // of what is tested over what is allowed
-    float light[LIGHT_OF_TILE];                               // of all sources that are smooth on the tile
-    uint open[MOST_WORDS];                                    // a bit for each source that is not
+    float seen[PLACES_SEEN][TILE_RAYS]; // of one source at the nodes,
+    float integrals[ALL_RAYS];          // and along all rays
+    float excess[ALL_RAYS];             // of what is tested over what is allowed; 16 of it
+    float light[LIGHT_OF_TILE];         // of all sources that are smooth on the tile
+    uint open[MOST_WORDS];              // a bit for each source that is not
     uint slot;
 } TileMemory;
 
@@ -118,7 +119,10 @@ INLINE void paint_tile(const TileTask *const task, const Tile *const tile, const
     const uint width = task->screen->view->width;
     uint integrals = 0;
     for (uint y = 0; y < pass->size && tile->row + y < task->end_row; y += BLOCK_HEIGHT) {
-        for (uint round = 0; round < TILE_ROUNDS; ++round) {
+#if TILE_WORKERS > 1
+        mem_fence(CLK_LOCAL_MEM_FENCE); // else compilers keep all of the tile's light in registers, 48 of them
+#endif
+        for (uint round = 0; round < BLOCK_ROUNDS; ++round) {
             const uintv place = first_ray(round) + LANE_NUMBERS, row = y + place / BLOCK_WIDTH;
             const Basis down = basis_at(pass, row);
             floatv red[NODES_A_SIDE], green[NODES_A_SIDE], blue[NODES_A_SIDE];
@@ -152,7 +156,7 @@ INLINE void inherit_light(const TilePass *const pass, const Tile *const tile, co
     of_parent.inner = pass->parent_inner;
     float3v inherited[TILE_ROUNDS];
     for (uint round = 0; round < TILE_ROUNDS; ++round) {
-        const uintv ray = first_ray(round) + LANE_NUMBERS;
+        const uintv ray = (first_ray(round) & (TILE_RAYS - 1u)) + LANE_NUMBERS;
         const uintv column = node_place(pass, ray & 3u) + (tile->column - parent->column);
         const uintv row = node_place(pass, ray >> 2u) + (tile->row - parent->row);
         const Basis across = basis_at(&of_parent, column), down = basis_at(&of_parent, row);
@@ -161,7 +165,7 @@ INLINE void inherit_light(const TilePass *const pass, const Tile *const tile, co
         inherited[round].z = interpolate(light + 2u * TILE_RAYS, &down, &across);
     }
     meet();
-    for (uint round = 0; round < TILE_ROUNDS; ++round)
+    for (uint round = 0; round < TILE_ROUNDS && is_node(first_ray(round)); ++round)
         show_light(inherited[round], first_ray(round), light);
 }
 

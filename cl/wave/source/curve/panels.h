@@ -22,7 +22,7 @@ floatv end_cut(const curve_path *const path, const Linear beyond, const float x)
 
 // Returns where the ray is equally far from C(1/2 + x) and C(1/2 + y), x and y apart; 0 where it never is. The
 // difference of the distances is small beside them, and where it is 0 the field may jump.
-INLINE floatv equidistant(const curve_peaks *const peaks, const floatv x, const floatv y) {
+CALL floatv equidistant(const curve_peaks *const peaks, const floatv x, const floatv y) {
     __global const Curve *const curve = peaks->curve;
     const fine3v velocity = fine3(curve->velocity, curve->velocity_rest);
     const fine3v second = fine3(curve->second, curve->second_rest);
@@ -72,7 +72,7 @@ typedef struct {
     floatv s, x, distance2;
 } curve_sight;
 
-curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
+CALL curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
     const curve_point point = curve_point_at(path, s);
     curve_sight sight;
     sight.s = s;
@@ -109,7 +109,7 @@ INLINE intv end_is_nearest(const curve_peaks *const peaks, const floatv x, const
 
 // Returns whether one end of the curve is the nearest point from all of a panel, and at which x it is: the points
 // nearest to an end form a convex set, so both ends of the panel tell.
-INLINE intv curve_is_closed(const curve_peaks *const peaks, const floatv from, const floatv to, floatv *const x) {
+CALL intv curve_is_closed(const curve_peaks *const peaks, const floatv from, const floatv to, floatv *const x) {
     const curve_path *const path = &peaks->path;
     const floatv middle = 0.5f * (from + to), inside = 1e-4f * (to - from);
     const intv is_first = linear_at(peaks->beyond_first, middle) <= 0.0f;
@@ -129,8 +129,8 @@ INLINE intv curve_is_closed(const curve_peaks *const peaks, const floatv from, c
 }
 
 // Returns the integral of a panel from all of which the end of the curve at x is the nearest point.
-INLINE floatv curve_closed_form(const curve_peaks *const peaks, const Decay decay, const floatv x, const floatv from,
-                                const floatv to) {
+CALL floatv curve_closed_form(const curve_peaks *const peaks, const Decay decay, const floatv x, const floatv from,
+                              const floatv to) {
     const curve_path *const path = &peaks->path;
     floatv least;
     const floatv nearest = closest_to_core(path, peaks->span2, x, &least);
@@ -158,8 +158,8 @@ INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, cons
 
 // Cuts the ray into panels, the last one first, and returns the integral of those that are closed: the parts that
 // belong to an end are one stretch of the ray. A lane that is done with a panel finds it empty.
-INLINE uint curve_panels(const curve_peaks *const peaks, const Decay decay, floatv *const from, floatv *const to,
-                         floatv *const integral) {
+CALL uint curve_panels(const curve_peaks *const peaks, const Decay decay, floatv *const from, floatv *const to,
+                       floatv *const integral) {
     const curve_path *const path = &peaks->path;
     const floatv end = peaks->ray->end;
     const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, end);
@@ -274,7 +274,7 @@ INLINE floatv curve_unseen(const curve_peaks *const peaks, const curve_view *con
 
 // Returns where to cut a panel that is not resolved: where the nearest point jumps, or else in the middle. Halving
 // closes in on the fastest change; then both sides, continued as they are, meet in the jump.
-INLINE floatv curve_split(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv middle) {
+CALL floatv curve_split(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv middle) {
     const curve_path *const path = &peaks->path;
     intv can_jump = from > to;
     for (float share = 0.0f; share < 1.1f; share += 0.25f) {

@@ -56,7 +56,7 @@ Linear beyond_end(const curve_path *const path, const float x) {
         fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across));
 }
 
-INLINE curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
+CALL curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
     curve_peaks peaks;
     peaks.path = curve_along(ray, sources, index);
     peaks.ray = ray;
@@ -103,7 +103,7 @@ INLINE curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const 
 }
 
 // Returns L(s) - C(1/2 + x) in the curve's frame, doubled.
-INLINE float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
+CALL float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
     __global const Curve *const curve = peaks->curve;
     const finev back = to_finev(-x);
     const fine3v from_middle = fine_between(peaks->ray, s, curve->middle, curve->middle_rest);
