@@ -49,8 +49,8 @@ INLINE beam_path beam_along(const Ray *const ray, const Sources *const sources, 
     path.height = from_finev(fine_dot3(from_tip, direction));
     path.height_slope = ray->stretch * from_finev(fine_dot3(ray->fine_toward, direction));
     path.line = beam->line, path.cap = beam->cap, path.sphere = beam->sphere;
-    const fine per_taper = (fine)beam->per_taper + (fine)beam->per_taper_rest;
-    path.taper = from_finev(fma(fine_dot3(from_tip, direction), (finev)(per_taper), (finev)(1.0f)));
+    const finev per_taper = uniform_fine(beam->per_taper, beam->per_taper_rest);
+    path.taper = from_finev(fine_fma(fine_dot3(from_tip, direction), per_taper, uniform_fine(1.0f, 0.0f)));
     path.taper_slope = path.height_slope * beam->per_taper;
     path.has_taper = beam->per_taper > 0.0f;
     path.floor2 = 4.0f * ray->floor2;
