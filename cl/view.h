@@ -65,19 +65,22 @@ floatv depth_of_pixel(const Screen *const screen, const uintv column, const uint
     return gather(screen->depths, as_intv(inside));
 }
 
+// Beyond every ray; pairs of float32 know no infinity.
+#define MOST_DEPTH 1e30f
+
 // Returns where the depth of a pixel ends its ray (Abe, Watanabe 2010, eq. 13, 14): depths begin at the eye, s at the
 // projection plane.
 INLINE floatv end_by_depth(const View *const view, const Ray *const ray, const floatv pixel_depth) {
-    const finev depth = to_finev(pixel_depth);
+    const finev depth = to_finev(min(pixel_depth, MOST_DEPTH));
     // |S - eye|, improved by a Newton step: little is left of a ray that ends next to the plane.
     const floatv to_plane = ray->length * inverse(ray->stretch);
     const finev guess = to_finev(to_plane);
-    const finev missing = fma(-guess, guess, fine_dot3(ray->fine_origin, ray->fine_origin));
-    const finev distance = guess + missing * to_finev(0.5f * inverse(to_plane));
-    const finev near_plane = (finev)((fine)view->near_plane + (fine)view->near_plane_rest);
-    const floatv beyond = view->near_plane > 0.0f
-                              ? from_finev(depth - near_plane) * from_finev(distance) * (1.0f / view->near_plane)
-                              : from_finev(depth - distance);
+    const finev missing = fine_fma(fine_negate(guess), guess, fine_dot3(ray->fine_origin, ray->fine_origin));
+    const finev distance = fine_add(guess, fine_multiply(missing, to_finev(0.5f * inverse(to_plane))));
+    const finev near_plane = uniform_fine(view->near_plane, view->near_plane_rest);
+    const floatv beyond = view->near_plane > 0.0f ? from_finev(fine_subtract(depth, near_plane)) *
+                                                        from_finev(distance) * (1.0f / view->near_plane)
+                                                  : from_finev(fine_subtract(depth, distance));
     const floatv s = beyond * (1.0f / view->ray_length);
     return clamp(s, 0.0f, 1.0f);
 }
@@ -128,5 +131,5 @@ INLINE Ray pixel_ray(const Screen *const screen, const uint first) {
 // Returns L(s) - M, with M given in two parts. Panels that meet in s meet here too: s is not rounded again.
 INLINE fine3v fine_between(const Ray *const ray, const floatv s, const float4 m, const float4 m_rest) {
     const fine3v from_m = fine_subtract3(ray->fine_origin, fine3(m, m_rest));
-    return fine_fma3(ray->fine_toward, to_finev(s) * to_finev(ray->stretch), from_m);
+    return fine_fma3(ray->fine_toward, fine_multiply(to_finev(s), to_finev(ray->stretch)), from_m);
 }

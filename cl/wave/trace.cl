@@ -5,9 +5,9 @@
 
 // Loads a vector and, four values on, its rest.
 fine3v gather_fine3(__global const float *const values, const intv at) {
-    const fine3v r = {to_finev(gather(values, at)) + to_finev(gather(values, at + 4)),
-                      to_finev(gather(values, at + 1)) + to_finev(gather(values, at + 5)),
-                      to_finev(gather(values, at + 2)) + to_finev(gather(values, at + 6))};
+    const fine3v r = {join_fine(gather(values, at), gather(values, at + 4)),
+                      join_fine(gather(values, at + 1), gather(values, at + 5)),
+                      join_fine(gather(values, at + 2), gather(values, at + 6))};
     return r;
 }
 

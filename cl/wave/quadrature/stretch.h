@@ -79,18 +79,14 @@ typedef struct {
 } Height;
 
 // A ray whose height does not leave 0 by more than rounding runs within the plane.
-#ifdef cl_khr_fp64
 #define WITHIN_PLANE 1e-12f
-#else
-#define WITHIN_PLANE 1e-6f
-#endif
 
 // Returns a ray's height over the plane through a point, perpendicular to a direction.
 INLINE Height height_over(const Ray *const ray, const float4 point, const float4 point_rest, const fine3v direction) {
     const fine3v from_point = fine_between(ray, splat(0.0f), point, point_rest);
     Height height;
     height.fine_at = fine_dot3(from_point, direction);
-    height.fine_slope = to_finev(ray->stretch) * fine_dot3(ray->fine_toward, direction);
+    height.fine_slope = fine_multiply(to_finev(ray->stretch), fine_dot3(ray->fine_toward, direction));
     height.at = from_finev(height.fine_at);
     height.slope = from_finev(height.fine_slope);
     const float3v size = from_fine3(from_point);
@@ -113,7 +109,7 @@ floatv zero_along(const floatv at, const floatv slope, const floatv end) {
 // Returns where a ray climbs through a plane: there a stretch ends.
 INLINE Cut climbs_through(const Height *const height, const floatv end) {
     const floatv s = zero_along(height->at, height->slope, end);
-    const floatv missed = from_finev(fma(height->fine_slope, to_finev(s), height->fine_at));
+    const floatv missed = from_finev(fine_fma(height->fine_slope, to_finev(s), height->fine_at));
     const intv is_there = (s > 0.0f) & (s < end);
     const floatv slope = select(splat(1.0f), height->slope, is_there);
     const Cut cut = {s, select(splat(0.0f), clamp(-missed / slope, -1e-6f, 1e-6f), is_there)};

@@ -47,8 +47,8 @@ PER_RAY_IF_WIDE beam_path beam_along(const Ray *const ray, const Sources *const 
     path.to_tip = distance2_to_point(ray, beam->tip, beam->tip_rest);
     path.height = height_over(ray, beam->tip, beam->tip_rest, direction);
     path.line = beam->line, path.cap = beam->cap, path.sphere = beam->sphere;
-    const fine per_taper = (fine)beam->per_taper + (fine)beam->per_taper_rest;
-    path.taper = from_finev(fma(path.height.fine_at, (finev)(per_taper), (finev)(1.0f)));
+    const finev per_taper = uniform_fine(beam->per_taper, beam->per_taper_rest);
+    path.taper = from_finev(fine_fma(path.height.fine_at, per_taper, uniform_fine(1.0f, 0.0f)));
     path.taper_slope = path.height.slope * beam->per_taper;
     path.has_taper = beam->per_taper > 0.0f;
     path.floor2 = 4.0f * ray->floor2;

@@ -149,9 +149,10 @@ INLINE void torus_near_refine(const torus_peaks *const peaks, const floatv base,
     __global const Torus *const torus = peaks->torus;
     const fine3v from_center = fine_between(peaks->ray, base, torus->center, torus->center_rest);
     const finev height = fine_dot3(from_center, fine3(torus->axis, torus->axis_rest));
-    const fine radius = (fine)torus->major_radius + (fine)torus->major_radius_rest;
+    const finev radius = uniform_fine(torus->major_radius, torus->major_radius_rest);
+    const finev beside = fine_fma(fine_negate(height), height, fine_dot3(from_center, from_center));
     near->height = 2.0f * from_finev(height);
-    near->excess = 4.0f * from_finev(fma(-height, height, fine_dot3(from_center, from_center)) - radius * radius);
+    near->excess = 4.0f * from_finev(fine_subtract(beside, fine_multiply(radius, radius)));
 }
 
 // Distance from the ring within the plane through its axis, with its slope along the ray.

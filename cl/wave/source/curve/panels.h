@@ -27,11 +27,12 @@ CALL floatv equidistant(const curve_peaks *const peaks, const floatv x, const fl
     const fine3v velocity = fine3(curve->velocity, curve->velocity_rest);
     const fine3v second = fine3(curve->second, curve->second_rest);
     const finev fine_x = to_finev(x), fine_y = to_finev(y);
-    const finev sum = fine_x + fine_y;
-    const finev half_squares = fma(fine_x, fine_x, fine_y * fine_y) * (finev)(0.5f);
+    const finev sum = fine_add(fine_x, fine_y);
+    const finev half_squares = fine_halve(fine_fma(fine_x, fine_x, fine_multiply(fine_y, fine_y)));
     const fine3v chord = fine_fma3(second, sum, velocity); // towards one from the other, in units of x - y
     const fine3v origin = fine_between(peaks->ray, splat(0.0f), curve->middle, curve->middle_rest);
-    const fine3v from_middle = fine_fma3(velocity, -sum * (finev)(0.5f), fine_fma3(second, -half_squares, origin));
+    const fine3v from_middle =
+        fine_fma3(velocity, fine_negate(fine_halve(sum)), fine_fma3(second, fine_negate(half_squares), origin));
     const floatv closing = peaks->ray->stretch * from_finev(fine_dot3(peaks->ray->fine_toward, chord));
     const floatv gap = -from_finev(fine_dot3(from_middle, chord));
     const intv never = fabs(closing) < 1e-30f;

@@ -110,7 +110,7 @@ CALL float3v offset_from_core(const curve_peaks *const peaks, const floatv s, co
     const fine3v velocity = fine3(curve->velocity, curve->velocity_rest);
     const fine3v second = fine3(curve->second, curve->second_rest);
     // C(1/2) - C(1/2 + x) = -x (C'(1/2) + x C2)
-    const fine3v chord = fine_fma3(second, -back, velocity);
+    const fine3v chord = fine_fma3(second, fine_negate(back), velocity);
     const float3v offset = from_fine3(fine_fma3(chord, back, from_middle));
     const float3v in_frame = {2.0f * dot3(offset, uniform3(curve->along)), 2.0f * dot3(offset, uniform3(curve->across)),
                               2.0f * dot3(offset, uniform3(curve->normal))};
