@@ -2,8 +2,8 @@
 //! `cargo run --example kernel_text -- FOLDER tiles-torus render-curve-squares ...`
 //!
 //! Each name is a kernel (`tiles`, `render`, `trace`, or `simpson`, every pixel by that rule), then kinds of source or
-//! `all`, then what else it has: `squares`, `depths`. `FOLDER/NAME.cl` is the text, `FOLDER/NAME.options` the compiler's
-//! options; as for a GPU, one ray a work-item and 16 work-items a tile, at a tolerance of 1e-3.
+//! `all`, then what else it has: `squares`, `depths`. `FOLDER/NAME.cl` is the text, `FOLDER/NAME.options` are the
+//! compiler's options; as for a GPU, one ray a work-item and 16 work-items a tile, at a tolerance of 1e-3.
 use std::path::Path;
 use std::process::ExitCode;
 
