@@ -13,6 +13,13 @@
 #define CALL __attribute__((noinline))
 #endif
 
+// The same for what every ray needs: vectors have no time for a call.
+#if LANES == 1
+#define CALL_IF_SCALAR CALL
+#else
+#define CALL_IF_SCALAR INLINE
+#endif
+
 // Integrals along a ray: a kernel that takes them in several places has them as calls, -D PER_RAY=CALL. Intel's
 // compiler for GPUs keeps more than it can hold across them, and decides itself. What is short is copied on GPUs, where
 // a ray would have to lie in memory.

@@ -74,21 +74,33 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
 #if KIND_HAS(look_ahead)
         KIND_look_ahead(&panel->near, left_s, right_s, PAIRS_AT_ONCE);
 #endif
+#if KIND_HAS(jumps)
+        KIND_node_sight right_sight[PAIRS_AT_ONCE], left_sight[PAIRS_AT_ONCE];
+#endif
 #pragma unroll
         for (int k = 0; k < PAIRS_AT_ONCE; ++k) {
             const floatv right = right_v[k] * KIND_near_field(&panel->near, right_s[k]);
 #if KIND_HAS(jumps)
-            KIND_see(peaks, &view, &view.right, &panel->near, right_v[k] * weight[begin + k], begin + k == 0);
+            right_sight[k] = panel->near.sight;
 #endif
             const floatv left = left_v[k] * KIND_near_field(&panel->near, left_s[k]);
 #if KIND_HAS(jumps)
-            KIND_see(peaks, &view, &view.left, &panel->near, left_v[k] * weight[begin + k], begin + k == 0);
+            left_sight[k] = panel->near.sight;
 #endif
             const floatv both = right + left;
             sum = fma(both, splat(weight[begin + k]), sum);
             even = fma(both, splat(null_even[begin + k]), even);
             odd = fma(right - left, splat(null_odd[begin + k]), odd);
         }
+#if KIND_HAS(jumps)
+        if (KIND_has_view(peaks)) {
+#pragma unroll
+            for (int k = 0; k < PAIRS_AT_ONCE; ++k) {
+                KIND_see(&view, &view.right, right_sight[k], right_v[k] * weight[begin + k], begin + k);
+                KIND_see(&view, &view.left, left_sight[k], left_v[k] * weight[begin + k], begin + k);
+            }
+        }
+#endif
     }
     const floatv scale = LN_2 * decay.strength * map->half_length;
     const floatv middle = panel->base + parameter_of(map, map->middle + (map->rising - map->falling));

@@ -75,25 +75,23 @@ INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distan
 // A height over a plane, along a ray.
 typedef struct {
     floatv at, slope;
-    finev fine_at, fine_slope;
 } Height;
 
-// A ray whose height does not leave 0 by more than rounding runs within the plane.
+// A ray whose height does not leave 0 by more than this of its size runs within the plane.
 #define WITHIN_PLANE 1e-12f
 
 // Returns a ray's height over the plane through a point, perpendicular to a direction.
 INLINE Height height_over(const Ray *const ray, const float4 point, const float4 point_rest, const fine3v direction) {
     const fine3v from_point = fine_between(ray, splat(0.0f), point, point_rest);
-    Height height;
-    height.fine_at = fine_dot3(from_point, direction);
-    height.fine_slope = fine_multiply(to_finev(ray->stretch), fine_dot3(ray->fine_toward, direction));
-    height.at = from_finev(height.fine_at);
-    height.slope = from_finev(height.fine_slope);
-    const float3v size = from_fine3(from_point);
-    const floatv nothing = WITHIN_PLANE * (fabs(size.x) + fabs(size.y) + fabs(size.z) + ray->length);
-    const intv is_within = max(fabs(height.at), fabs(height.at + height.slope)) < nothing;
-    height.at = select(height.at, splat(0.0f), is_within);
-    height.slope = select(height.slope, splat(0.0f), is_within);
+    Height height = {from_finev(fine_dot3(from_point, direction)),
+                     ray->stretch * from_finev(fine_dot3(ray->fine_toward, direction))};
+    const floatv most = max(fabs(height.at), fabs(height.at + height.slope));
+    if (any_lane(most < 1e-6f * ray->length)) {
+        const float3v size = from_fine3(from_point);
+        const intv is_within = most < WITHIN_PLANE * (fabs(size.x) + fabs(size.y) + fabs(size.z) + ray->length);
+        height.at = select(height.at, splat(0.0f), is_within);
+        height.slope = select(height.slope, splat(0.0f), is_within);
+    }
     return height;
 }
 
@@ -107,11 +105,20 @@ floatv zero_along(const floatv at, const floatv slope, const floatv end) {
 }
 
 // Returns where a ray climbs through a plane: there a stretch ends.
-INLINE Cut climbs_through(const Height *const height, const floatv end) {
-    const floatv s = zero_along(height->at, height->slope, end);
-    const floatv missed = from_finev(fine_fma(height->fine_slope, to_finev(s), height->fine_at));
-    const intv is_there = (s > 0.0f) & (s < end);
-    const floatv slope = select(splat(1.0f), height->slope, is_there);
-    const Cut cut = {s, select(splat(0.0f), clamp(-missed / slope, -1e-6f, 1e-6f), is_there)};
-    return cut;
+Cut climbs_through(const Height *const height, const floatv end) {
+    return cut_at(zero_along(height->at, height->slope, end));
+}
+
+// A ray this many floors from a core, or closer, needs all digits of where a stretch ends at the core.
+#define FLOORS_OFF 100.0f
+
+// Refines such a cut in the lanes where the ray passes that close.
+INLINE void refine_cut(Cut *const cut, const Ray *const ray, const Height *const height, const float4 point,
+                       const float4 point_rest, const fine3v direction, const intv is_close) {
+    const intv counts = is_close & (cut->s > 0.0f) & (cut->s < ray->end) & (height->slope != 0.0f);
+    if (!any_lane(counts))
+        return;
+    const floatv missed = from_finev(fine_dot3(fine_between(ray, cut->s, point, point_rest), direction));
+    const floatv slope = select(splat(1.0f), height->slope, counts);
+    cut->rest = select(splat(0.0f), clamp(-missed / slope, -1e-6f, 1e-6f), counts);
 }

@@ -48,7 +48,8 @@ PER_RAY_IF_WIDE beam_path beam_along(const Ray *const ray, const Sources *const 
     path.height = height_over(ray, beam->tip, beam->tip_rest, direction);
     path.line = beam->line, path.cap = beam->cap, path.sphere = beam->sphere;
     const finev per_taper = uniform_fine(beam->per_taper, beam->per_taper_rest);
-    path.taper = from_finev(fine_fma(path.height.fine_at, per_taper, uniform_fine(1.0f, 0.0f)));
+    const fine3v from_tip = fine_between(ray, splat(0.0f), beam->tip, beam->tip_rest);
+    path.taper = from_finev(fine_fma(fine_dot3(from_tip, direction), per_taper, uniform_fine(1.0f, 0.0f)));
     path.taper_slope = path.height.slope * beam->per_taper;
     path.has_taper = beam->per_taper > 0.0f;
     path.floor2 = 4.0f * ray->floor2;
@@ -73,7 +74,11 @@ PER_RAY_IF_WIDE floatv beam_integral(const Ray *const ray, const Sources *const 
     const Decay decay = quadrature->decay;
     const Cut begin = cut_at(splat(0.0f)), end = cut_at(ray->end);
     const intv is_rising = path.height.slope > -1e-30f;
-    const Cut tip = climbs_through(&path.height, ray->end);
+    Cut tip = climbs_through(&path.height, ray->end);
+    __global const Beam *const beam = &sources->beam_list[index];
+    const intv is_close = path.to_tip.least < FLOORS_OFF * FLOORS_OFF * path.floor2;
+    refine_cut(&tip, ray, &path.height, beam->tip, beam->tip_rest, fine3(beam->direction, beam->direction_rest),
+               is_close);
     const Stretch ahead = between(select_cut(begin, tip, is_rising), select_cut(tip, end, is_rising));
     const Stretch behind = between(select_cut(tip, begin, is_rising), select_cut(end, tip, is_rising));
 

@@ -27,6 +27,8 @@
 #define KIND_is_uneven JOIN(KIND, _is_uneven)   // KIND_HAS(dark_parts)
 #define KIND_more_cuts JOIN(KIND, _more_cuts)   // KIND_HAS(more_cuts)
 #define KIND_view JOIN(KIND, _view)             // KIND_HAS(jumps), with what follows
+#define KIND_node_sight JOIN(KIND, _node_sight)
+#define KIND_has_view JOIN(KIND, _has_view)
 #define KIND_view_from JOIN(KIND, _view_from)
 #define KIND_see JOIN(KIND, _see)
 #define KIND_unseen JOIN(KIND, _unseen)

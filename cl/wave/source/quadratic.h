@@ -25,13 +25,18 @@ INLINE Quadratic squared_length_along(const float3v start, const float3v span, c
 // Refines a squared length by the vector at the parameter of the least, which float32 has missed by a little. Far from
 // the ray, where one all but parallel to a line comes closest to it, there are no more digits.
 INLINE void refine(Quadratic *const q, const float3v at_nearest, const float3v span) {
-    const intv is_near = fabs(q->nearest) < 1e3f;
+    const Quadratic rough = *q;
     const floatv per_slope = inverse(q->slope);
-    const floatv ahead = dot3(at_nearest, span) * per_slope;
-    const float3v beside = fma3(span, -ahead * per_slope, at_nearest);
-    q->ahead = select(q->ahead, ahead, is_near);
-    q->least = select(q->least, max(dot3(beside, beside), 1e-30f), is_near);
-    q->offset = select(q->offset, fma(-q->slope, q->nearest, ahead), is_near);
+    q->ahead = dot3(at_nearest, span) * per_slope;
+    const float3v beside = fma3(span, -q->ahead * per_slope, at_nearest);
+    q->least = max(dot3(beside, beside), 1e-30f);
+    q->offset = fma(-q->slope, q->nearest, q->ahead);
+    const intv is_far = fabs(q->nearest) > 1e3f;
+    if (any_lane(is_far)) {
+        q->ahead = select(q->ahead, rough.ahead, is_far);
+        q->least = select(q->least, rough.least, is_far);
+        q->offset = select(q->offset, rough.offset, is_far);
+    }
 }
 
 // Returns slope s + offset at the parameter s + rest, with all digits next to the least.

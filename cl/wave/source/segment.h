@@ -68,8 +68,13 @@ PER_RAY_IF_WIDE floatv segment_integral(const Ray *const ray, const Sources *con
     const segment_path path = segment_along(ray, sources, index);
     const Decay decay = quadrature->decay;
     const intv is_falling = path.over_first.slope <= -1e-30f;
-    const Cut at_first = climbs_through(&path.over_first, ray->end),
-              at_last = climbs_through(&path.over_last, ray->end);
+    __global const Segment *const segment = &sources->segment_list[index];
+    const fine3v direction = fine3(segment->direction, segment->direction_rest);
+    const floatv close2 = FLOORS_OFF * FLOORS_OFF * path.floor2;
+    Cut at_first = climbs_through(&path.over_first, ray->end), at_last = climbs_through(&path.over_last, ray->end);
+    refine_cut(&at_first, ray, &path.over_first, segment->from, segment->from_rest, direction,
+               path.to_first.least < close2);
+    refine_cut(&at_last, ray, &path.over_last, segment->to, segment->to_rest, direction, path.to_last.least < close2);
     const intv is_last_first = at_last.s < at_first.s;
     const Cut enters = select_cut(at_first, at_last, is_last_first),
               leaves = select_cut(at_last, at_first, is_last_first);

@@ -218,57 +218,89 @@ curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is
     return sight;
 }
 
-// What the nodes of a panel see, from its ends inwards.
+// What the nodes of one side of a panel see, from its end inwards: x of the nearest points.
 typedef struct {
-    floatv right, left; // x of the points nearest to what was last asked for on either side
-    floatv leap;        // the farthest from one such x to the next
-    floatv first_leap;  // that from an end to the outermost node
-    floatv step;        // how much the local intensity changes there
-    floatv plain;       // sum over the nodes of weight times field without intensity
+    floatv end, outermost, last;
+    intv jumps; // whether x changes more than smoothly beyond the outermost node
+} curve_side;
+
+typedef struct {
+    curve_side left, right;
+    floatv leap;  // the farthest from one x to the next
+    floatv plain; // sum over the nodes of weight times field without intensity
 } curve_view;
 
+#define MOST_PASSED 1.0f     // pieces of a local intensity from one node to the next
 #define PASSED_BETWEEN 0.15f // the share of a panel between two nodes,
 #define BEYOND_NODES 0.03f   // and beyond its outermost one;
 #define BEYOND_KINKS 5e-4f   // what a kink there may come to, about half the square of that
+#define DARK 0.01f           // of the light without intensity: what begins beyond the nodes of such a panel counts
+#define SMOOTH_LEAP 0.6f     // what x may change beyond the outermost node where it is smooth, of what it does inwards
+
+curve_side curve_side_from(const floatv end) {
+    const curve_side side = {end, end, end, (intv)(0)};
+    return side;
+}
+
+// Returns whether a panel's nodes may miss what matters.
+INLINE bool curve_has_view(const curve_peaks *const peaks) {
+#ifdef COARSE
+    return peaks->path.spline_count > 0;
+#else
+    return true;
+#endif
+}
 
 // Begins with what is seen from the ends of a panel.
 INLINE curve_view curve_view_from(const curve_peaks *const peaks, const floatv from, const floatv to) {
     const curve_path *const path = &peaks->path;
-    const floatv inside = 1e-4f * (to - from), none = splat(0.0f);
-    curve_view view = {none, none, none, none, none, none};
-#ifdef COARSE
-    if (!path->spline_count)
-        return view;
-#endif
-    view.right = curve_seen_from(path, to - inside).x;
-    view.left = curve_seen_from(path, from + inside).x;
+    floatv first = splat(0.0f), last = first;
+    if (curve_has_view(peaks)) {
+        const floatv inside = 1e-4f * (to - from);
+        first = curve_seen_from(path, from + inside).x, last = curve_seen_from(path, to - inside).x;
+    }
+    const curve_view view = {curve_side_from(first), curve_side_from(last), splat(0.0f), splat(0.0f)};
     return view;
 }
 
-// Takes note of what a node sees, whose neighbour outwards, or whose end of the panel, saw C(1/2 + last).
-INLINE void curve_see(const curve_peaks *const peaks, curve_view *const view, floatv *const last,
-                      const curve_near *const near, const floatv weight, const bool is_outermost) {
-    const curve_path *const path = &peaks->path;
-    const floatv leap = fabs(near->seen - *last);
+// Takes note of what a side's node sees, the outermost being number 0.
+INLINE void curve_see(curve_view *const view, curve_side *const side, const curve_node_sight sight, const floatv weight,
+                      const int number) {
+    const floatv leap = fabs(sight.x - side->last);
+    if (number == 0)
+        side->outermost = sight.x;
+    if (number == 1)
+        side->jumps = fabs(side->end - side->outermost) > SMOOTH_LEAP * leap;
     view->leap = max(view->leap, leap);
-    view->plain = fma(weight, near->plain, view->plain);
-    if (is_outermost) {
-        view->first_leap = max(view->first_leap, leap);
-        if (path->spline_count)
-            view->step = max(view->step, fabs(curve_intensity(path, near->seen) - curve_intensity(path, *last)));
-    }
-    *last = near->seen;
+    view->plain = fma(weight, sight.plain, view->plain);
+    side->last = sight.x;
+}
+
+// Returns how much the local intensity changes between an end of a panel and the outermost node, in these lanes.
+INLINE floatv curve_step(const curve_path *const path, const curve_side *const side, const intv counts) {
+    if (!any_lane(counts))
+        return splat(0.0f);
+    const floatv step = fabs(curve_intensity(path, side->end) - curve_intensity(path, side->outermost));
+    return select(splat(0.0f), step, counts);
 }
 
 // Returns the light that may lie between a panel's nodes, from the sum of theirs: where the nearest point jumps beside
 // the outermost node, unseen by all others, the field has a kink, which counts when tolerances are tight, and with a
 // local intensity a jump. Or where it passes over so much of a local intensity that the nodes cannot tell what.
 INLINE floatv curve_unseen(const curve_peaks *const peaks, const curve_view *const view, const floatv sum) {
-    const float pieces = (float)peaks->path.spline_count;
-    const floatv of_plain = select(BEYOND_NODES * view->step, splat(PASSED_BETWEEN), pieces * view->leap > 0.75f);
-    floatv unseen = pieces > 0.0f ? of_plain * view->plain : splat(0.0f);
+    const curve_path *const path = &peaks->path;
+    const curve_side *const left = &view->left, *const right = &view->right;
+    floatv unseen = splat(0.0f);
+    if (path->spline_count) {
+        const intv is_dark = fabs(sum)<DARK * view->plain, passes = (float)path->spline_count * view->leap> MOST_PASSED;
+        const floatv step = max(curve_step(path, left, left->jumps | is_dark), //
+                                curve_step(path, right, right->jumps | is_dark));
+        unseen = select(BEYOND_NODES * step, splat(PASSED_BETWEEN), passes) * view->plain;
+    }
 #ifndef COARSE
-    unseen += select(splat(0.0f), BEYOND_KINKS * fabs(sum), view->first_leap > 0.1f);
+    const intv jumps = (left->jumps & (fabs(left->end - left->outermost) > 0.1f)) |
+                       (right->jumps & (fabs(right->end - right->outermost) > 0.1f));
+    unseen += select(splat(0.0f), BEYOND_KINKS * fabs(sum), jumps);
 #endif
     return unseen;
 }

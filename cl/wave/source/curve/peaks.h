@@ -56,7 +56,7 @@ Linear beyond_end(const curve_path *const path, const float x) {
         fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across));
 }
 
-CALL curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
+CALL_IF_SCALAR curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const sources, const uint index) {
     curve_peaks peaks;
     peaks.path = curve_along(ray, sources, index);
     peaks.ray = ray;
@@ -103,7 +103,7 @@ CALL curve_peaks curve_peaks_along(const Ray *const ray, const Sources *const so
 }
 
 // Returns L(s) - C(1/2 + x) in the curve's frame, doubled.
-CALL float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
+CALL_IF_SCALAR float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
     __global const Curve *const curve = peaks->curve;
     const finev back = to_finev(-x);
     const fine3v from_middle = fine_between(peaks->ray, s, curve->middle, curve->middle_rest);
@@ -117,13 +117,18 @@ CALL float3v offset_from_core(const curve_peaks *const peaks, const floatv s, co
     return in_frame;
 }
 
+// What a node sees: x of the nearest point, and the field without intensity.
+typedef struct {
+    floatv x, plain;
+} curve_node_sight;
+
 // The curve beside a point of the ray: the path from there on, seen from the nearest point of the curve.
 typedef struct {
     curve_path path;
     floatv core;
     bool is_polished; // whether roots of the cubic are improved
     RootCounts counts;
-    floatv seen, plain; // of the last point that was asked for: x of the nearest point, the field without intensity
+    curve_node_sight sight; // of the last point that was asked for
 } curve_near;
 
 // Returns whether the roots of the cubic have too few digits for such a squared distance. They lose the more, the
@@ -198,7 +203,7 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     const intv is_floored = lowest < path->floor2;
     const intv is_thin = is_floored & (path->floor2 < 1e-6f * size2) & (curvature > 0.02f * peaks->span2);
     peak->is_flat = is_floored & !is_thin;
-    curve_near near = {*path, x, needs_polish(path, lowest), {true, true}, x, splat(0.0f)};
+    curve_near near = {*path, x, needs_polish(path, lowest), {true, true}, {x, splat(0.0f)}};
     near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2, path->is_square) - lowest, is_thin);
     near.path.floor2 = select(path->floor2, 0.5f * path->floor2, is_thin);
     near.path.along.at = offset.x;
@@ -250,7 +255,7 @@ INLINE floatv curve_near_field(curve_near *const near, const floatv x) {
     if (near->is_polished)
         nearest = polished(&near->path, &point, nearest, &distance2);
     const floatv per_distance = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
-    near->seen = nearest;
-    near->plain = profiled(per_distance, near->path.is_square);
-    return near->path.spline_count ? near->plain * curve_intensity(&near->path, nearest) : near->plain;
+    near->sight.x = nearest;
+    near->sight.plain = profiled(per_distance, near->path.is_square);
+    return near->path.spline_count ? near->sight.plain * curve_intensity(&near->path, nearest) : near->sight.plain;
 }
