@@ -277,7 +277,7 @@ INLINE void curve_see(curve_view *const view, curve_side *const side, const curv
 }
 
 // Returns how much the local intensity changes between an end of a panel and the outermost node, in these lanes.
-INLINE floatv curve_step(const curve_path *const path, const curve_side *const side, const intv counts) {
+CALL floatv curve_step(const curve_path *const path, const curve_side *const side, const intv counts) {
     if (!any_lane(counts))
         return splat(0.0f);
     const floatv step = fabs(curve_intensity(path, side->end) - curve_intensity(path, side->outermost));
