@@ -140,7 +140,9 @@ impl Field for CurveField {
         );
         offer(0.0);
         offer(1.0);
-        for t in [0.0, 1.0] {
+        // The planes through the ends, and through the knots of the intensity: what is lit may lie between two of them.
+        let pieces = self.intensity.as_ref().map_or(1, |series| series.len() - 2);
+        for t in (0..=pieces).map(|knot| knot as f64 / pieces as f64) {
             let tangent = 2.0 * t * self.c2 + self.c1;
             breaks.push((self.at(t) - ray.origin).dot(tangent) / ray.span.dot(tangent));
         }
