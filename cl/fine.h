@@ -18,12 +18,7 @@ typedef JOIN(double, LANES) finev;
 #define count_to_finev to_finev
 #define uniform_fine(value, rest) ((finev)((double)(value) + (double)(rest)))
 #define join_fine(value, rest) (to_finev(value) + to_finev(rest))
-#define fine_add(a, b) ((a) + (b))
-#define fine_subtract(a, b) ((a) - (b))
-#define fine_negate(a) (-(a))
-#define fine_halve(a) ((a) * (finev)(0.5f))
-#define fine_multiply(a, b) ((a) * (b))
-#define fine_fma(a, b, c) fma(a, b, c)
+#define IS_ONE_NUMBER
 
 #elif defined(SHORT_PAIRS)
 // Spoiled: the rest is left out.
@@ -33,6 +28,11 @@ typedef floatv finev;
 #define count_to_finev to_floatv
 #define uniform_fine(value, rest) ((finev)((value) + (rest)))
 #define join_fine(value, rest) ((value) + (rest))
+#define IS_ONE_NUMBER
+
+#endif
+
+#ifdef IS_ONE_NUMBER
 #define fine_add(a, b) ((a) + (b))
 #define fine_subtract(a, b) ((a) - (b))
 #define fine_negate(a) (-(a))
