@@ -2,7 +2,7 @@
 //! `cargo run --example kernel_text -- FOLDER tiles-torus render-curve-squares ...`
 //!
 //! Each name is a kernel (`tiles`, `render`, `trace`, or `simpson`, every pixel by that rule), then kinds of source or
-//! `all`, then what else it has: `squares`, `depths`. `FOLDER/NAME.cl` is the text, `FOLDER/NAME.options` are the
+//! `all`, then what else it has: `squares`, `series`, `depths`. `FOLDER/NAME.cl` is the text, `FOLDER/NAME.options` the
 //! compiler's options; as for a GPU, one ray a work-item and 16 work-items a tile, at a tolerance of 1e-3.
 use std::path::Path;
 use std::process::ExitCode;
@@ -35,17 +35,18 @@ fn write(folder: &Path, name: &str) -> Result<(), String> {
         ));
     }
     let mut kinds = Vec::new();
-    let (mut has_squares, mut has_depth) = (false, false);
+    let (mut has_squares, mut has_series, mut has_depth) = (false, false, false);
     for word in words {
         match word {
             "all" => kinds.extend(KINDS),
             "squares" => has_squares = true,
+            "series" => has_series = true,
             "depths" => has_depth = true,
             kind if KINDS.contains(&kind) => kinds.push(kind),
             other => {
                 let right = KINDS.join(", ");
                 return Err(format!(
-                    "\"{other}\" is no kind; {right}, all, squares or depths"
+                    "\"{other}\" is no kind; {right}, all, squares, series or depths"
                 ));
             }
         }
@@ -55,6 +56,7 @@ fn write(folder: &Path, name: &str) -> Result<(), String> {
         kinds: &kinds,
         tolerance: (kernel != "simpson").then_some(1e-3),
         has_squares,
+        has_series,
         has_depth,
         lanes: 1,
         workers: 16,

@@ -193,6 +193,7 @@ impl Wave {
             },
             kinds: self.packed.sources.counts().map(|count| count > 0),
             has_squares: self.packed.facts(scene).has_squares,
+            has_series: !self.packed.sources.spline_pieces.is_empty(),
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
             film,
             rays,

@@ -200,7 +200,9 @@ macro_rules! define_specimens {
             };
             let mut kinds = task.kinds.into_iter();
             $(if kinds.next() == Some(true) {
-                scene.$list.push(SourceKind::specimen(place, profile));
+                let specimen: crate::scene::$Type = SourceKind::specimen(place, profile);
+                let has_series = task.has_series && profile == Profile::Inverse;
+                scene.$list.push(if has_series { specimen.with_series() } else { specimen });
             })*
         }
     };

@@ -152,12 +152,8 @@ fn through(renderer: &mut Renderer) -> Vec<Row> {
 
 #[test]
 fn the_known_rays_are_met_on_every_lane_width_and_in_every_form() {
-    // Every width as it is built, and every form on one narrow and one wide device: each is a program for each kind.
-    let forms = [
-        "-DPORTABLE_ROOTS",
-        "-DNO_SHUFFLES -DINLINE=",
-        "-DNO_DOUBLES",
-    ];
+    // Every width as it is built, and the forms on one narrow and one wide device: each is a program for each kind.
+    let forms = ["-DPORTABLE_ROOTS -DNO_SHUFFLES -DINLINE=", "-DNO_DOUBLES"];
     let builds = lane_widths().into_iter().map(|lanes| (lanes, ""));
     let formed = forms.into_iter().flat_map(|form| [(1, form), (8, form)]);
     for (lanes, form) in builds.chain(formed) {

@@ -33,8 +33,8 @@ floatv middle_of(const floatv n0, const floatv n1) {
 
 // Integrates where the ray comes closer to the core than the floor of all distances, within which the field is
 // constant: a ray in a million. So short a part has no digits left in s, only in x = slope s + offset.
-CALL floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay, const Stretch stretch,
-                       const floatv x0, const floatv x1, const uint is_square) {
+CALL_IF_SCALAR floatv with_floor(const Quadratic *const distance2, const floatv floor2, const Decay decay,
+                                 const Stretch stretch, const floatv x0, const floatv x1, const uint is_square) {
     const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
     const floatv reach = 0.5f * twice_sqrt(max(floor2 - distance2->least, 1e-36f));
     const floatv x_begin = clamp(-reach, x0, x1), x_end = clamp(reach, x0, x1);

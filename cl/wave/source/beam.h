@@ -61,7 +61,7 @@ floatv beam_field(const beam_path *const path, const floatv s) {
     const floatv height = height_at(&path->height, s);
     const floatv per_line = twice_inverse_sqrt(max(quadratic_at(&path->to_line, s), path->floor2));
     const floatv per_tip = twice_inverse_sqrt(max(quadratic_at(&path->to_tip, s), path->floor2));
-    const floatv of_line = profiled(per_line, path->is_square), of_tip = profiled(per_tip, path->is_square);
+    const floatv of_line = profiled(per_line, IS_SQUARE(path)), of_tip = profiled(per_tip, IS_SQUARE(path));
     const floatv taper = max(fma(path->taper_slope, s, path->taper), 0.0f);
     const floatv behind = path->has_taper ? path->line * taper * of_line : path->cap * of_tip;
     return fma(splat(path->sphere), of_tip, select(path->line * of_line, behind, height < 0.0f));
@@ -82,20 +82,20 @@ PER_RAY_IF_WIDE floatv beam_integral(const Ray *const ray, const Sources *const 
     const Stretch ahead = between(select_cut(begin, tip, is_rising), select_cut(tip, end, is_rising));
     const Stretch behind = between(select_cut(tip, begin, is_rising), select_cut(end, tip, is_rising));
 
-    floatv light = path.line * integral_over(ahead, &path.to_line, path.floor2, decay, path.is_square);
+    floatv light = path.line * integral_over(ahead, &path.to_line, path.floor2, decay, IS_SQUARE(&path));
     if (path.has_taper) {
         const Cut taper = cut_at(zero_along(path.taper, path.taper_slope, ray->end));
         const intv is_later = taper.s > tip.s;
         Stretch fading = between(select_cut(taper, tip, is_later), select_cut(tip, taper, is_later));
         fading.light_from = clamp(fma(path.taper_slope, fading.from, path.taper), 0.0f, 1.0f);
         fading.light_to = clamp(fma(path.taper_slope, fading.to, path.taper), 0.0f, 1.0f);
-        light += path.line * integral_over(fading, &path.to_line, path.floor2, decay, path.is_square);
+        light += path.line * integral_over(fading, &path.to_line, path.floor2, decay, IS_SQUARE(&path));
     } else {
-        light += path.cap * integral_over(behind, &path.to_tip, path.floor2, decay, path.is_square);
+        light += path.cap * integral_over(behind, &path.to_tip, path.floor2, decay, IS_SQUARE(&path));
     }
     if (path.sphere != 0.0f) {
         const Stretch all = between(begin, end);
-        light += path.sphere * integral_over(all, &path.to_tip, path.floor2, decay, path.is_square);
+        light += path.sphere * integral_over(all, &path.to_tip, path.floor2, decay, IS_SQUARE(&path));
     }
     return light;
 }

@@ -49,8 +49,8 @@ Clearance curve_clearance(const Ray *const ray, const Sources *const sources, co
     const floatv to_first2 = in_pixels2(ray, pixel_step, first.s, first.distance2 + path->softening2);
     const floatv to_second2 = in_pixels2(ray, pixel_step, second.s, second.distance2 + path->softening2);
     Clearance clearance = clear_by(0.25f * min(to_first2, to_second2));
-    if (path->spline_count) {
-        const float pieces = (float)path->spline_count;
+    if (SERIES_LENGTH(path)) {
+        const float pieces = (float)SERIES_LENGTH(path);
         clearance.seen[0] = pieces * select(first.x, second.x, to_second2 < to_first2);
         clearance.seen[1] = pieces * curve_seen_from(path, splat(0.0f)).x;
         clearance.seen[2] = pieces * curve_seen_from(path, ray->end).x;

@@ -53,7 +53,7 @@ floatv segment_field(const segment_path *const path, const floatv s) {
     const floatv beside = quadratic_at(&path->to_line, s);
     const floatv before = quadratic_at(&path->to_first, s), beyond = quadratic_at(&path->to_last, s);
     const floatv distance2 = select(select(beside, beyond, over_last > 0.0f), before, over_first < 0.0f);
-    return profiled(twice_inverse_sqrt(max(distance2, path->floor2)), path->is_square);
+    return profiled(twice_inverse_sqrt(max(distance2, path->floor2)), IS_SQUARE(path));
 }
 
 INLINE Quadratic segment_select(const Quadratic a, const Quadratic b, const intv is_b) {
@@ -80,9 +80,9 @@ PER_RAY_IF_WIDE floatv segment_integral(const Ray *const ray, const Sources *con
               leaves = select_cut(at_last, at_first, is_last_first);
     const Quadratic to_near = segment_select(path.to_first, path.to_last, is_falling);
     const Quadratic to_far = segment_select(path.to_last, path.to_first, is_falling);
-    return integral_over(between(cut_at(splat(0.0f)), enters), &to_near, path.floor2, decay, path.is_square) +
-           integral_over(between(enters, leaves), &path.to_line, path.floor2, decay, path.is_square) +
-           integral_over(between(leaves, cut_at(ray->end)), &to_far, path.floor2, decay, path.is_square);
+    return integral_over(between(cut_at(splat(0.0f)), enters), &to_near, path.floor2, decay, IS_SQUARE(&path)) +
+           integral_over(between(enters, leaves), &path.to_line, path.floor2, decay, IS_SQUARE(&path)) +
+           integral_over(between(leaves, cut_at(ray->end)), &to_far, path.floor2, decay, IS_SQUARE(&path));
 }
 
 // Returns the clearance of the line where the ray passes between the ends, else of the nearer end. Lengths are doubled.

@@ -31,14 +31,14 @@ INLINE sphere_path sphere_along(const Ray *const ray, const Sources *const sourc
 }
 
 floatv sphere_field(const sphere_path *const path, const floatv s) {
-    return profiled(twice_inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2)), path->is_square);
+    return profiled(twice_inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2)), IS_SQUARE(path));
 }
 
 PER_RAY_IF_WIDE floatv sphere_integral(const Ray *const ray, const Sources *const sources, const uint index,
                                        const Quadrature *const quadrature) {
     const sphere_path path = sphere_along(ray, sources, index);
     const Stretch all = evenly_lit(splat(0.0f), ray->end);
-    return integral_over(all, &path.distance2, path.floor2, quadrature->decay, path.is_square);
+    return integral_over(all, &path.distance2, path.floor2, quadrature->decay, IS_SQUARE(&path));
 }
 
 Clearance sphere_clearance(const Ray *const ray, const Sources *const sources, const uint index,

@@ -1,8 +1,14 @@
 // Local intensity S(t): a clamped uniform quadratic B-spline (Watanabe, Abe, Konno 2015, eq. 14-16), which the host
-// cuts into its polynomial pieces.
+// cuts into its polynomial pieces. Only programs for scenes with such a series contain it.
 #pragma once
 #include "../../lanes.h"
 #include "../types.h"
+
+#ifdef SERIES
+#define SERIES_LENGTH(source) ((source)->spline_count)
+#else
+#define SERIES_LENGTH(source) 0u
+#endif
 
 floatv spline_at(__global const SplinePiece *const pieces, const uint count, const floatv t) {
     const floatv scaled = clamp(t, splat(0.0f), splat(1.0f)) * (float)count;

@@ -57,7 +57,7 @@ floatv torus_field(const torus_path *const path, const floatv s) {
     const floatv from_ring = twice_sqrt_less(quadratic_at(&path->rho2, s), splat(path->major_radius));
     const floatv height = fma(path->height_slope, s, path->height);
     const floatv distance2 = fma(from_ring, from_ring, fma(height, height, path->softening2));
-    return profiled(twice_inverse_sqrt(max(distance2, path->floor2)), path->is_square);
+    return profiled(twice_inverse_sqrt(max(distance2, path->floor2)), IS_SQUARE(path));
 }
 
 typedef struct {
@@ -140,7 +140,7 @@ INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv bas
     near.height_slope = path->height_slope;
     near.softening2 = path->softening2;
     near.floor2 = path->floor2;
-    near.is_square = path->is_square;
+    near.is_square = IS_SQUARE(path);
     return near;
 }
 
@@ -178,7 +178,7 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     *base = clamp(peak->re, from, to);
     torus_near near = torus_near_at(peaks, *base);
     const intv is_close =
-        max(fabs(near.excess), near.height * near.height) < (path->is_square ? 0.5f : 0.02f) * radius2;
+        max(fabs(near.excess), near.height * near.height) < (IS_SQUARE(path) ? 0.5f : 0.02f) * radius2;
     if (!any_lane(is_close)) {
         peak->re -= *base;
         return near;
@@ -210,7 +210,7 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     const floatv ahead = -fma(offset.from_ring, offset.from_ring_slope, near.height * near.height_slope) * per_slope2;
     const floatv aside = fma(offset.from_ring, near.height_slope, -near.height * offset.from_ring_slope);
     const floatv least = fma(aside * per_slope2, aside, path->softening2);
-    const floatv lifted = floored(least, path->floor2, path->is_square);
+    const floatv lifted = floored(least, path->floor2, IS_SQUARE(path));
     const intv is_thin = is_next & (path->floor2 < 1e-4f * radius2);
     near.softening2 += select(splat(0.0f), lifted - least, is_thin);
     near.floor2 = select(near.floor2, 0.5f * near.floor2, is_thin);
@@ -230,7 +230,7 @@ INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv aside2 = fma(height, height, near->softening2);
     const floatv sum2 = sum * sum;
     const floatv scaled2 = max(fma(excess, excess, aside2 * sum2), near->floor2 * sum2);
-    return profiled(sum * coarse_twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f)), near->is_square);
+    return profiled(sum * coarse_twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f)), IS_SQUARE(near));
 }
 
 Clearance torus_clearance(const Ray *const ray, const Sources *const sources, const uint index,

@@ -95,6 +95,13 @@ impl SourceKind for Curve {
             ..Self::new(points.map(|(x, z)| place + DVec3::new(x, 0.3 * z, z)))
         }
     }
+
+    fn with_series(self) -> Self {
+        Self {
+            intensity: Some(vec![0.6, 1.0, 0.3, 0.8, 0.5]),
+            ..self
+        }
+    }
 }
 
 /// Reads exactly three control points.

@@ -65,6 +65,15 @@ pub(crate) trait SourceKind {
 
     /// Makes a source of this kind at about `place`, for the self-test of kernels.
     fn specimen(place: DVec3, profile: Profile) -> Self;
+
+    /// Gives a specimen a series over its core, where its kind has such.
+    #[must_use]
+    fn with_series(self) -> Self
+    where
+        Self: Sized,
+    {
+        self
+    }
 }
 
 /// No product on the way to a pixel may exceed this: sums of up to 1e8 such lights are still finite in float32.

@@ -173,7 +173,7 @@ INLINE floatv nearest_on_curve(const curve_path *const path, const curve_point *
 
 // Returns the local intensity at C(1/2 + x).
 INLINE floatv curve_intensity(const curve_path *const path, const floatv x) {
-    return spline_at(path->pieces, path->spline_count, x + 0.5f);
+    return spline_at(path->pieces, SERIES_LENGTH(path), x + 0.5f);
 }
 
 INLINE floatv curve_field(const curve_path *const path, const floatv s) {
@@ -181,6 +181,6 @@ INLINE floatv curve_field(const curve_path *const path, const floatv s) {
     floatv distance2;
     const floatv x = nearest_on_curve(path, &point, &distance2);
     const floatv per_distance = twice_inverse_sqrt(max(distance2 + path->softening2, path->floor2));
-    const floatv field = profiled(per_distance, path->is_square);
-    return path->spline_count ? field * curve_intensity(path, x) : field;
+    const floatv field = profiled(per_distance, IS_SQUARE(path));
+    return SERIES_LENGTH(path) ? field * curve_intensity(path, x) : field;
 }

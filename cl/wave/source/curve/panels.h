@@ -22,7 +22,7 @@ floatv end_cut(const curve_path *const path, const Linear beyond, const float x)
 
 // Returns where the ray is equally far from C(1/2 + x) and C(1/2 + y), x and y apart; 0 where it never is. The
 // difference of the distances is small beside them, and where it is 0 the field may jump.
-CALL floatv equidistant(const curve_peaks *const peaks, const floatv x, const floatv y) {
+CALL_IF_SCALAR floatv equidistant(const curve_peaks *const peaks, const floatv x, const floatv y) {
     __global const Curve *const curve = peaks->curve;
     const fine3v velocity = fine3(curve->velocity, curve->velocity_rest);
     const fine3v second = fine3(curve->second, curve->second_rest);
@@ -73,7 +73,7 @@ typedef struct {
     floatv s, x, distance2;
 } curve_sight;
 
-CALL curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
+CALL_IF_SCALAR curve_sight curve_seen_from(const curve_path *const path, const floatv s) {
     const curve_point point = curve_point_at(path, s);
     curve_sight sight;
     sight.s = s;
@@ -110,7 +110,8 @@ INLINE intv end_is_nearest(const curve_peaks *const peaks, const floatv x, const
 
 // Returns whether one end of the curve is the nearest point from all of a panel, and at which x it is: the points
 // nearest to an end form a convex set, so both ends of the panel tell.
-CALL intv curve_is_closed(const curve_peaks *const peaks, const floatv from, const floatv to, floatv *const x) {
+CALL_IF_SCALAR intv curve_is_closed(const curve_peaks *const peaks, const floatv from, const floatv to,
+                                    floatv *const x) {
     const curve_path *const path = &peaks->path;
     const floatv middle = 0.5f * (from + to), inside = 1e-4f * (to - from);
     const intv is_first = linear_at(peaks->beyond_first, middle) <= 0.0f;
@@ -130,8 +131,8 @@ CALL intv curve_is_closed(const curve_peaks *const peaks, const floatv from, con
 }
 
 // Returns the integral of a panel from all of which the end of the curve at x is the nearest point.
-CALL floatv curve_closed_form(const curve_peaks *const peaks, const Decay decay, const floatv x, const floatv from,
-                              const floatv to) {
+CALL_IF_SCALAR floatv curve_closed_form(const curve_peaks *const peaks, const Decay decay, const floatv x,
+                                        const floatv from, const floatv to) {
     const curve_path *const path = &peaks->path;
     floatv least;
     const floatv nearest = closest_to_core(path, peaks->span2, x, &least);
@@ -142,8 +143,8 @@ CALL floatv curve_closed_form(const curve_peaks *const peaks, const Decay decay,
         refine(&to_end, offset_from_core(peaks, nearest, x), span);
     }
     to_end.least += path->softening2;
-    const floatv integral = integral_over(evenly_lit(from, to), &to_end, path->floor2, decay, path->is_square);
-    return path->spline_count ? integral * curve_intensity(path, x) : integral;
+    const floatv integral = integral_over(evenly_lit(from, to), &to_end, path->floor2, decay, IS_SQUARE(path));
+    return SERIES_LENGTH(path) ? integral * curve_intensity(path, x) : integral;
 }
 
 // Finds in which lanes a panel is closed, and its integral there.
@@ -159,8 +160,8 @@ INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, cons
 
 // Cuts the ray into panels, the last one first, and returns the integral of those that are closed: the parts that
 // belong to an end are one stretch of the ray. A lane that is done with a panel finds it empty.
-CALL uint curve_panels(const curve_peaks *const peaks, const Decay decay, floatv *const from, floatv *const to,
-                       floatv *const integral) {
+CALL_IF_SCALAR uint curve_panels(const curve_peaks *const peaks, const Decay decay, floatv *const from,
+                                 floatv *const to, floatv *const integral) {
     const curve_path *const path = &peaks->path;
     const floatv end = peaks->ray->end;
     const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, end);
@@ -203,13 +204,13 @@ CALL uint curve_panels(const curve_peaks *const peaks, const Decay decay, floatv
 
 // Returns whether all panels must be seen before errors can be measured by what they add up to: some may be dark.
 INLINE bool curve_is_uneven(const curve_peaks *const peaks) {
-    return peaks->path.spline_count > 0;
+    return SERIES_LENGTH(&peaks->path) > 0;
 }
 
 // Returns further cuts: every piece of a local intensity may need panels of its own, and what is dark to nodes all
 // around must be found.
 INLINE uint curve_more_cuts(const curve_peaks *const peaks) {
-    const uint pieces = peaks->path.spline_count;
+    const uint pieces = SERIES_LENGTH(&peaks->path);
     return pieces ? 128 + 4 * pieces : 0;
 }
 
@@ -245,7 +246,7 @@ curve_side curve_side_from(const floatv end) {
 // Returns whether a panel's nodes may miss what matters.
 INLINE bool curve_has_view(const curve_peaks *const peaks) {
 #ifdef COARSE
-    return peaks->path.spline_count > 0;
+    return SERIES_LENGTH(&peaks->path) > 0;
 #else
     return true;
 #endif
@@ -277,7 +278,7 @@ INLINE void curve_see(curve_view *const view, curve_side *const side, const curv
 }
 
 // Returns how much the local intensity changes between an end of a panel and the outermost node, in these lanes.
-CALL floatv curve_step(const curve_path *const path, const curve_side *const side, const intv counts) {
+CALL_IF_SCALAR floatv curve_step(const curve_path *const path, const curve_side *const side, const intv counts) {
     if (!any_lane(counts))
         return splat(0.0f);
     const floatv step = fabs(curve_intensity(path, side->end) - curve_intensity(path, side->outermost));
@@ -291,8 +292,9 @@ INLINE floatv curve_unseen(const curve_peaks *const peaks, const curve_view *con
     const curve_path *const path = &peaks->path;
     const curve_side *const left = &view->left, *const right = &view->right;
     floatv unseen = splat(0.0f);
-    if (path->spline_count) {
-        const intv is_dark = fabs(sum)<DARK * view->plain, passes = (float)path->spline_count * view->leap> MOST_PASSED;
+    if (SERIES_LENGTH(path)) {
+        const intv is_dark =
+            fabs(sum)<DARK * view->plain, passes = (float)SERIES_LENGTH(path) * view->leap> MOST_PASSED;
         const floatv step = max(curve_step(path, left, left->jumps | is_dark), //
                                 curve_step(path, right, right->jumps | is_dark));
         unseen = select(BEYOND_NODES * step, splat(PASSED_BETWEEN), passes) * view->plain;
@@ -307,7 +309,8 @@ INLINE floatv curve_unseen(const curve_peaks *const peaks, const curve_view *con
 
 // Returns where to cut a panel that is not resolved: where the nearest point jumps, or else in the middle. Halving
 // closes in on the fastest change; then both sides, continued as they are, meet in the jump.
-CALL floatv curve_split(const curve_peaks *const peaks, const floatv from, const floatv to, const floatv middle) {
+CALL_IF_SCALAR floatv curve_split(const curve_peaks *const peaks, const floatv from, const floatv to,
+                                  const floatv middle) {
     const curve_path *const path = &peaks->path;
     intv can_jump = from > to;
     for (float share = 0.0f; share < 1.1f; share += 0.25f) {

@@ -204,7 +204,7 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     const intv is_thin = is_floored & (path->floor2 < 1e-6f * size2) & (curvature > 0.02f * peaks->span2);
     peak->is_flat = is_floored & !is_thin;
     curve_near near = {*path, x, needs_polish(path, lowest), {true, true}, {x, splat(0.0f)}};
-    near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2, path->is_square) - lowest, is_thin);
+    near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2, IS_SQUARE(path)) - lowest, is_thin);
     near.path.floor2 = select(path->floor2, 0.5f * path->floor2, is_thin);
     near.path.along.at = offset.x;
     near.path.across.at = offset.y;
@@ -256,6 +256,6 @@ INLINE floatv curve_near_field(curve_near *const near, const floatv x) {
         nearest = polished(&near->path, &point, nearest, &distance2);
     const floatv per_distance = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
     near->sight.x = nearest;
-    near->sight.plain = profiled(per_distance, near->path.is_square);
-    return near->path.spline_count ? near->sight.plain * curve_intensity(&near->path, nearest) : near->sight.plain;
+    near->sight.plain = profiled(per_distance, IS_SQUARE(&near->path));
+    return SERIES_LENGTH(&near->path) ? near->sight.plain * curve_intensity(&near->path, nearest) : near->sight.plain;
 }
