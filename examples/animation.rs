@@ -43,6 +43,7 @@ fn scene_at(time: f64) -> Scene {
         coefficient: 0.16 * charge,
         color: DVec3::new(0.25, 0.55, 1.3),
         profile: Profile::InverseSquare,
+        ..Sphere::default()
     });
     let strength = 0.07 * ramp(time, 0.45, 0.7);
     if strength > 0.0 {

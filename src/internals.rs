@@ -89,6 +89,7 @@ pub struct ProgramTask<'a> {
     /// Of the method `exact`; `None`: Simpson's rule.
     pub tolerance: Option<f64>,
     pub has_squares: bool,
+    pub has_shapes: bool,
     pub has_series: bool,
     pub has_depth: bool,
     /// Rays that a work-item carries side by side.
@@ -112,6 +113,7 @@ pub fn program_text(program: &ProgramTask<'_>) -> (String, String) {
         },
         kinds: present(program.kinds),
         has_squares: program.has_squares,
+        has_shapes: program.has_shapes,
         has_series: program.has_series,
         has_depth: program.has_depth,
         film: FilmFormat::Floats,

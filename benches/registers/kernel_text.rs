@@ -35,18 +35,20 @@ fn write(folder: &Path, name: &str) -> Result<(), String> {
         ));
     }
     let mut kinds = Vec::new();
-    let (mut has_squares, mut has_series, mut has_depth) = (false, false, false);
+    let (mut has_squares, mut has_shapes) = (false, false);
+    let (mut has_series, mut has_depth) = (false, false);
     for word in words {
         match word {
             "all" => kinds.extend(KINDS),
             "squares" => has_squares = true,
+            "shapes" => has_shapes = true,
             "series" => has_series = true,
             "depths" => has_depth = true,
             kind if KINDS.contains(&kind) => kinds.push(kind),
             other => {
                 let right = KINDS.join(", ");
                 return Err(format!(
-                    "\"{other}\" is no kind; {right}, all, squares, series or depths"
+                    "\"{other}\" is no kind; {right}, all, squares, shapes, series or depths"
                 ));
             }
         }
@@ -56,6 +58,7 @@ fn write(folder: &Path, name: &str) -> Result<(), String> {
         kinds: &kinds,
         tolerance: (kernel != "simpson").then_some(1e-3),
         has_squares,
+        has_shapes,
         has_series,
         has_depth,
         lanes: 1,

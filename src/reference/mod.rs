@@ -17,11 +17,17 @@ pub use quadrature::integrate;
 
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
-use crate::scene::{CORE_FLOOR, Decay, Measure, Method, Profile, Ray, Scene, ViewPlane};
+use crate::scene::{CORE_FLOOR, Decay, Falloff, Measure, Method, Profile, Ray, Scene, ViewPlane};
 use crate::threads;
 
 /// Relative error that [`exact`] aims at.
 pub const RELATIVE_ERROR: f64 = 1e-10;
+
+/// Beyond so many standard deviations nothing is left of a Gaussian.
+const GAUSSIAN_END: f64 = 9.0;
+
+/// How exactly edges of light are found, as a share of the ray; light begins there with the square of what is missing.
+const EDGE_WIDTH: f64 = 1e-6;
 
 /// What is integrated along a ray besides the field.
 #[doc(hidden)]
@@ -38,13 +44,29 @@ impl Integrand {
     pub fn at(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
         let floor = CORE_FLOOR * CORE_FLOOR * ray.span.length_squared();
         let sample = source.field.sample(ray.at(s));
-        let distance2 = (sample.distance2 + self.softening * self.softening).max(floor);
-        let distance = match source.profile {
-            Profile::Inverse => distance2.sqrt(),
-            Profile::InverseSquare => distance2,
+        let Falloff {
+            profile,
+            radius,
+            reach,
+        } = source.falloff;
+        let softened = sample.distance2 + radius * radius + self.softening * self.softening;
+        let distance2 = softened.max(floor);
+        let width = std::f64::consts::SQRT_2 * radius;
+        let field = match profile {
+            Profile::Inverse => 1.0 / distance2.sqrt(),
+            Profile::InverseSquare => 1.0 / distance2,
+            Profile::InverseCube => distance2.powf(-1.5),
+            Profile::Gaussian => (-sample.distance2 / (width * width)).exp(),
+            Profile::Smeared => match sample.distance2.sqrt() {
+                0.0 => std::f64::consts::FRAC_2_SQRT_PI / width,
+                distance => libm::erf(distance / width) / distance,
+            },
         };
+        let window = reach.map_or(1.0, |reach| {
+            (1.0 - sample.distance2 / (reach * reach)).max(0.0).powi(2)
+        });
         let zeta = self.decay.map_or(1.0, |decay| decay.at(s));
-        zeta * sample.intensity / distance
+        zeta * sample.intensity * field * window
     }
 }
 
@@ -53,6 +75,7 @@ impl Integrand {
 pub fn exact(source: &Source, ray: &Ray, integrand: &Integrand, end: f64) -> f64 {
     let mut breaks = Vec::with_capacity(16);
     source.field.breaks(ray, &mut breaks);
+    add_edges(source, ray, &mut breaks);
     integrate(
         |s| integrand.at(source, ray, s),
         &mut breaks,
@@ -60,6 +83,34 @@ pub fn exact(source: &Source, ray: &Ray, integrand: &Integrand, end: f64) -> f64
         RELATIVE_ERROR,
     )
     .value
+}
+
+/// Adds a break wherever the ray comes to or leaves the light of a source that ends at a distance: no node may be near.
+fn add_edges(source: &Source, ray: &Ray, breaks: &mut Vec<f64>) {
+    let Falloff {
+        profile,
+        radius,
+        reach,
+    } = source.falloff;
+    let width = (profile == Profile::Gaussian).then_some(GAUSSIAN_END * radius);
+    let Some(end) = [width, reach].into_iter().flatten().min_by(f64::total_cmp) else {
+        return;
+    };
+    // Along a ray the distance changes by no more than the way.
+    let length = ray.span.length();
+    let mut open = vec![(0.0, 1.0)];
+    while let Some((from, to)) = open.pop() {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let to_edge = source.field.sample(ray.at(middle)).distance2.sqrt() - end;
+        if to_edge.abs() > 1.001 * half * length {
+            continue;
+        }
+        if half < EDGE_WIDTH {
+            breaks.push(middle);
+        } else {
+            open.extend([(from, middle), (middle, to)]);
+        }
+    }
 }
 
 /// Takes the same integral by the composite Simpson rule with an even number of equal divisions (2015, eq. 23).

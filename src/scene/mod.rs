@@ -84,9 +84,9 @@ macro_rules! define_scene {
                 $(self.$list.iter().for_each(|source| source.for_each_emission(add));)*
             }
 
-            /// Returns whether any source falls off in this way.
-            pub(crate) fn has_profile(&self, profile: Profile) -> bool {
-                $(self.$list.iter().any(|source| source.light().profile == profile))||*
+            /// Returns whether any source falls off in such a way.
+            pub(crate) fn any_falloff(&self, is_such: impl Fn(Falloff) -> bool) -> bool {
+                $(self.$list.iter().any(|source| is_such(source.light().falloff)))||*
             }
         }
     };

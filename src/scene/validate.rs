@@ -54,12 +54,13 @@ impl Scene {
         check_display(&self.display).map_err(of("display"))?;
         self.check_depth().map_err(of(""))?;
         let brightness = self.brightness();
-        if brightness.inverse > BRIGHTEST {
+        let of_line = brightness.most / brightness.least_distance;
+        if of_line > BRIGHTEST {
             return Err(SceneError::value(
                 "decay.beta",
                 format!(
                     "alpha / beta^2 next to a core comes to {:.0e}, more than float32 holds",
-                    brightness.inverse
+                    of_line
                 ),
             ));
         }
@@ -75,10 +76,9 @@ impl Scene {
             Measure::Parameter => 1.0,
             Measure::Length => length,
         };
-        let of_field = |field: f64| decay * field * measure.max(1.0);
         Brightness {
-            inverse: of_field(1.0 / least_distance),
-            inverse_square: of_field(1.0 / (least_distance * least_distance)),
+            most: decay * measure.max(1.0),
+            least_distance,
         }
     }
 

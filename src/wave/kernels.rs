@@ -18,6 +18,8 @@ pub(crate) struct Task {
     pub kinds: Present,
     /// Whether any source falls off with the squared distance.
     pub has_squares: bool,
+    /// Whether any has no closed form for how it falls off.
+    pub has_shapes: bool,
     /// Whether any has a series over its core.
     pub has_series: bool,
     /// Whether depths end the rays.
@@ -143,6 +145,9 @@ fn task_definitions(workers: u32, counts_samples: bool, task: &Task, rule: &Rule
     }
     if task.has_squares {
         definitions += " -D INVERSE_SQUARES";
+    }
+    if task.has_shapes {
+        definitions += " -D SHAPES";
     }
     if task.has_series {
         definitions += " -D SERIES";

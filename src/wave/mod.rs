@@ -193,6 +193,7 @@ impl Wave {
             },
             kinds: self.packed.sources.counts().map(|count| count > 0),
             has_squares: self.packed.facts(scene).has_squares,
+            has_shapes: self.packed.facts(scene).has_shapes,
             has_series: !self.packed.sources.spline_pieces.is_empty(),
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
             film,
@@ -203,7 +204,7 @@ impl Wave {
     fn rule_for(&mut self, scene: &Scene) -> Rule {
         let facts = self.packed.facts(scene);
         let tolerance = scene.integration.method.tolerance();
-        let fitting = Rule::of(tolerance, facts.has_squares, facts.has_both_signs);
+        let fitting = Rule::of(tolerance, facts.has_sharp_peaks, facts.has_both_signs);
         self.rule.unwrap_or(fitting)
     }
 

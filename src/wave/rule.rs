@@ -23,8 +23,8 @@ const RULES: [(f64, Rule); 5] = [
     (0.0, rule(10, 3e-6, 2e-6)),
 ];
 
-/// The loosest tolerance whose rule serves squares.
-const MOST_FOR_SQUARES: f64 = 1e-3;
+/// The loosest tolerance whose rule serves fields with sharper peaks than 1 over the distance.
+const MOST_FOR_SHARP_PEAKS: f64 = 1e-3;
 
 /// By how much less each source may be off where sources of opposite signs cancel: their light is then several times
 /// that of a pixel.
@@ -40,10 +40,14 @@ const fn rule(nodes: u32, smooth_threshold: f32, kinked_threshold: f32) -> Rule 
 }
 
 impl Rule {
-    /// Chooses the rule that meets a tolerance. Fields that fall off with the squared distance have sharper peaks,
-    /// which a loose rule may miss.
-    pub fn of(tolerance: f64, has_squares: bool, has_both_signs: bool) -> Self {
-        let most = if has_squares { MOST_FOR_SQUARES } else { 1.0 };
+    /// Chooses the rule that meets a tolerance. A loose rule may miss sharp peaks, such as those of
+    /// fields that fall off with the squared distance.
+    pub fn of(tolerance: f64, has_sharp_peaks: bool, has_both_signs: bool) -> Self {
+        let most = if has_sharp_peaks {
+            MOST_FOR_SHARP_PEAKS
+        } else {
+            1.0
+        };
         let share = if has_both_signs { CANCELLED } else { 1.0 };
         let wanted = tolerance.min(most) * share;
         let serves = |(tolerance, _): &&(f64, Self)| wanted >= *tolerance;

@@ -149,6 +149,9 @@ fn known_scenes(task: Task) -> Result<[Scene; 2]> {
         if task.has_squares {
             add_specimens(scene, task, Profile::InverseSquare);
         }
+        if task.has_shapes {
+            add_specimens(scene, task, Profile::InverseCube);
+        }
         if task.has_depth {
             let distance = scene.camera.eye.length();
             let depth = |index: usize| depth(index, distance);
@@ -197,6 +200,7 @@ macro_rules! define_specimens {
             let place = match profile {
                 Profile::Inverse => DVec3::new(0.3, 0.2, 0.1),
                 Profile::InverseSquare => DVec3::new(-0.4, 0.5, -0.2),
+                _ => DVec3::new(0.1, -0.3, 0.4),
             };
             let mut kinds = task.kinds.into_iter();
             $(if kinds.next() == Some(true) {

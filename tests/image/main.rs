@@ -15,5 +15,6 @@ mod laws; // checks what every image obeys: linearity, order, mirror, motion, sc
 mod parts; // draws rows, rays and changed scenes as the whole image has them
 mod rays; // compares single rays with integrals that are known to nine digits
 mod search; // draws what examples/hard_scenes has found
-mod segment; // holds segments to their definition
+mod segment;
+mod shapes; // holds segments to their definition
 mod tiles; // holds interpolation by tiles to the tolerance, and counts what it costs

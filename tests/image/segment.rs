@@ -259,6 +259,7 @@ fn ends_that_coincide_make_a_point_and_a_long_one_a_line() {
                 coefficient: 1.3,
                 color: DVec3::new(0.3, 1.0, 0.6),
                 profile,
+                ..Sphere::default()
             });
         });
         let found = difference(&point, &sphere);

@@ -22,7 +22,13 @@ fn vector(random: &mut Rng) -> DVec3 {
     DVec3::from([0; 3].map(|_| number(random) * if random.bool() { 1.0 } else { -1.0 }))
 }
 
-const PROFILES: [Profile; 2] = [Profile::Inverse, Profile::InverseSquare];
+const PROFILES: [Profile; 5] = [
+    Profile::Inverse,
+    Profile::InverseSquare,
+    Profile::InverseCube,
+    Profile::Gaussian,
+    Profile::Smeared,
+];
 
 /// Sources of every kind and profile, beams with every end, curves with and without a series.
 fn add_sources(scene: &mut Scene, random: &mut Rng) {
@@ -32,6 +38,8 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             coefficient: -number(random),
             color: vector(random),
             profile,
+            radius: number(random),
+            reach: Some(20.0 + number(random)),
         });
         scene.cylinders.push(Cylinder {
             point: vector(random),
@@ -39,6 +47,8 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             coefficient: number(random),
             color: vector(random),
             profile,
+            radius: number(random),
+            reach: Some(20.0 + number(random)),
         });
         for end in [
             BeamEnd::Cap(None),
@@ -54,6 +64,8 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 end,
                 sphere_coefficient: number(random),
                 profile,
+                radius: number(random),
+                reach: None,
             });
         }
         scene.segments.push(Segment {
@@ -69,6 +81,8 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             coefficient: number(random),
             color: vector(random),
             profile,
+            radius: number(random),
+            reach: Some(20.0 + number(random)),
         });
         for intensity in [None, Some(vec![0.0, 0.1, 1.0 / 3.0]), Some(vec![2.0; 9])] {
             scene.curves.push(Curve {
@@ -77,6 +91,8 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 color: vector(random),
                 intensity,
                 profile,
+                radius: number(random),
+                reach: Some(20.0 + number(random)),
             });
         }
     }

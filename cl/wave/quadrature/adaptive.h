@@ -17,6 +17,12 @@
 #define DOUBT 30.0f
 #define FIRST_ESTIMATE 0.25f
 
+// Newton steps to where light ends, and how fast a ray must come closer to it, of its length, to take one.
+#ifndef EDGE_STEPS
+#define EDGE_STEPS 8
+#endif
+#define LEAST_CLOSING 0.02f
+
 // Pairs of nodes whose fields are taken side by side: all for vectors, whose lanes do not hide what an operation waits
 // for; one where work-items do that and registers are few.
 #ifndef PAIRS_AT_ONCE
@@ -120,14 +126,14 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
 // whether both are resolved.
 INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold, const floatv cut,
                             floatv *const integral) {
-    const floatv end = peaks->ray->end;
+    const floatv begin = peaks->begin, end = peaks->end;
 #if LANES == 1
     // One after the other, from one copy of the code: other work-items work while one waits.
     floatv unresolved2 = 0.0f;
     *integral = 0.0f;
 #pragma unroll 1
     for (int k = 0; k < 2; ++k) {
-        const floatv from = k == 0 ? 0.0f : cut, to = k == 0 ? cut : end;
+        const floatv from = k == 0 ? begin : cut, to = k == 0 ? cut : end;
         if (is_empty_panel(decay, from, to))
             continue;
         KIND_panel panel = KIND_open_panel(peaks, decay, from, to);
@@ -138,10 +144,10 @@ INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
     const floatv allowed = threshold * *integral;
     return !(unresolved2 > allowed * allowed);
 #else
-    const intv has_first = !is_empty_panel(decay, splat(0.0f), cut), has_second = !is_empty_panel(decay, cut, end);
-    const floatv first_end = select(splat(1.0f), cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
+    const intv has_first = !is_empty_panel(decay, begin, cut), has_second = !is_empty_panel(decay, cut, end);
+    const floatv first_end = select(begin + 1.0f, cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
     const floatv second_end = select(splat(1.0f), end, has_second);
-    KIND_panel first = KIND_open_panel(peaks, decay, splat(0.0f), first_end);
+    KIND_panel first = KIND_open_panel(peaks, decay, begin, first_end);
     KIND_panel second = KIND_open_panel(peaks, decay, second_begin, second_end);
     const PanelSum of_first = KIND_sum_panel(peaks, decay, &first);
     const PanelSum of_second = KIND_sum_panel(peaks, decay, &second);
@@ -154,17 +160,63 @@ INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
 }
 #endif
 
-PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources, const uint index,
-                             const Quadrature *const quadrature) {
+#if defined(SHAPES) && KIND_HAS(peaks_along)
+// Returns where light begins, or, seen from the other end of a panel (`turn` -1), where it ends: by Newton steps on the
+// distance to the core. One that goes where the ray draws away from the core may have passed over what is lit: in its
+// place comes a step as long as the distance to the light.
+INLINE floatv KIND_edge(const KIND_peaks *const peaks, const floatv from, const floatv to, const float turn) {
+    const floatv length = 2.0f * peaks->ray->length, per_length = inverse(length);
+    const float end = sqrt(peaks->path.profile.end2);
+    floatv s = turn > 0.0f ? from : to, safe = s, edge = s;
+#pragma unroll 1
+    for (int step = 0; step < EDGE_STEPS; ++step) {
+        floatv slope;
+        const floatv distance2 = max(KIND_edge_distance2(peaks, s, &slope), 1e-30f);
+        const floatv per_distance = 0.5f * twice_inverse_sqrt_(distance2);
+        const floatv to_light = fma(distance2, per_distance, splat(-end));
+        const floatv closing = -0.5f * turn * slope * per_distance;
+        const intv is_closing = closing > LEAST_CLOSING * length;
+        const intv is_there = is_closing | (s == safe);
+        const floatv short_step = fma(turn * max(to_light, 0.0f), per_length, s);
+        const floatv newton = fma(turn * to_light, inverse(max(closing, 1e-30f)), s);
+        edge = select(edge, select(newton, s, to_light > 0.0f), is_there);
+        safe = clamp(select(safe, short_step, is_there), from, to);
+        s = clamp(select(safe, newton, is_closing), from, to);
+    }
+    return clamp(edge, from, to);
+}
+
+// Trims panels to where there is light.
+INLINE void KIND_trim(const KIND_peaks *const peaks, const uint count, floatv *const from, floatv *const to) {
+    for (uint k = 0; k < count; ++k) {
+        if (!any_lane(to[k] > from[k]))
+            continue;
+        const floatv begin = KIND_edge(peaks, from[k], to[k], 1.0f);
+        to[k] = max(begin, KIND_edge(peaks, begin, to[k], -1.0f));
+        from[k] = begin;
+    }
+}
+#endif
+
+INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadrature *const quadrature) {
     const Decay decay = quadrature->decay;
 #if KIND_HAS(kinks)
     float threshold = quadrature->kinked_threshold;
 #else
     float threshold = quadrature->smooth_threshold;
 #endif
-    const KIND_peaks peaks = KIND_peaks_along(ray, sources, index);
+    const KIND_peaks peaks = *all_peaks;
     floatv all_from[MOST_PANELS], all_to[MOST_PANELS], integral;
-    uint open = KIND_panels(&peaks, decay, all_from, all_to, &integral);
+    uint open = KIND_panels(&peaks, quadrature, all_from, all_to, &integral);
+#if defined(SHAPES) && KIND_HAS(peaks_along)
+    const bool has_end = HAS_END(&peaks.path.profile);
+    if (has_end) {
+        KIND_trim(&peaks, open, all_from, all_to);
+        threshold = quadrature->kinked_threshold;
+    }
+#else
+    const bool has_end = false;
+#endif
 #if KIND_HAS(more_cuts)
     const uint most_cuts = MOST_CUTS + KIND_more_cuts(&peaks);
 #else
@@ -173,13 +225,15 @@ PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources,
     uint cuts = 0, nodes = 0;
     floatv estimate = integral;
 #if KIND_HAS(two_panels)
-    nodes += 4 * GAUSS_PAIRS;
-    floatv both;
-    if (KIND_two_panels(&peaks, decay, threshold, all_to[1], &both)) {
-        open = 0;
-        integral = both;
+    if (!has_end) {
+        nodes += 4 * GAUSS_PAIRS;
+        floatv both;
+        if (KIND_two_panels(&peaks, decay, threshold, all_to[1], &both)) {
+            open = 0;
+            integral = both;
+        }
+        estimate = both;
     }
-    estimate = both;
 #endif
     const uint all = open;
 #if KIND_HAS(dark_parts)
@@ -202,7 +256,7 @@ PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources,
         intv is_done = is_empty;
 #if KIND_HAS(closed_ends)
         if (cuts > 0)
-            is_done |= KIND_closed(&peaks, decay, from, to, &value);
+            is_done |= KIND_closed(&peaks, quadrature, from, to, &value);
 #endif
         if (any_lane(!is_done)) {
             KIND_panel opened = KIND_open_panel(&peaks, decay, from, to);
@@ -236,3 +290,11 @@ PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources,
 #endif
     return integral;
 }
+
+#if KIND_HAS(peaks_along)
+PER_RAY floatv KIND_integral(const Ray *const ray, const Sources *const sources, const uint index,
+                             const Quadrature *const quadrature) {
+    const KIND_peaks peaks = KIND_peaks_along(ray, sources, index);
+    return KIND_integral_of(&peaks, quadrature);
+}
+#endif

@@ -1,8 +1,10 @@
 // The integral of a field whose squared distance is a quadratic, over a stretch of a ray: in closed form, 1 / distance
-// or its square, and finite where the ray meets the core.
+// or its square, and finite where the ray meets the core; by nodes where the field has another shape.
 #pragma once
 #include "closed_form.h"
 #include "closed_form_square.h"
+#include "quadrature.h"
+#include "shape.h"
 
 INLINE floatv without_floor(const Quadratic *const distance2, const Decay decay, const Stretch stretch, const floatv x0,
                             const floatv x1, const uint is_square) {
@@ -61,8 +63,15 @@ CALL_IF_SCALAR floatv with_floor(const Quadratic *const distance2, const floatv 
 }
 
 // Integrates over a stretch. Lengths are doubled, the integral is not.
-INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distance2, const floatv floor2,
-                            const Decay decay, const uint is_square) {
+INLINE floatv integral_over(const Stretch stretch, const Quadratic *const distance2, const Profile *const profile,
+                            const Quadrature *const quadrature) {
+#if defined(SHAPES) && defined(EXACT)
+    if (IS_SHAPED(profile))
+        return shape_over(stretch, distance2, profile, quadrature);
+#endif
+    const Decay decay = quadrature->decay;
+    const floatv floor2 = profile->floor2;
+    const uint is_square = IS_SQUARE(profile);
     const floatv x0 = along_at(distance2, stretch.from, stretch.from_rest);
     const floatv x1 = along_at(distance2, stretch.to, stretch.to_rest);
     floatv over_v = without_floor(distance2, decay, stretch, x0, x1, is_square);

@@ -22,11 +22,13 @@ typedef struct Curve {
     uint is_straight;  // 1: so straight that the cubic for the nearest point degenerates
     uint spline_begin; // first of its pieces in the list of spline pieces
     uint spline_count; // pieces of its local-intensity series; 0: intensity 1
-    uint is_square;
+    uint padding;
+    Falloff falloff;
 } Curve;
 CHECK_SIZE(Curve, SIZEOF_CURVE);
 
-#define curve_has_parts 1       // of its local intensity
+#define curve_has_parts 1 // of its local intensity
+#define curve_has_peaks_along 1
 #define curve_has_kinks 1       // where the nearest point jumps;
 #define curve_has_jumps 1       // with a local intensity the field does so too
 #define curve_has_closed_ends 1 // panels from which an end is nearest
@@ -46,12 +48,13 @@ Clearance curve_clearance(const Ray *const ray, const Sources *const sources, co
     const curve_path *const path = &peaks.path;
     const curve_sight first = curve_seen_from(path, clamp(peaks.first, 0.0f, ray->end));
     const curve_sight second = curve_seen_from(path, clamp(peaks.second, 0.0f, ray->end));
-    const floatv to_first2 = in_pixels2(ray, pixel_step, first.s, first.distance2 + path->softening2);
-    const floatv to_second2 = in_pixels2(ray, pixel_step, second.s, second.distance2 + path->softening2);
-    Clearance clearance = clear_by(0.25f * min(to_first2, to_second2));
+    const floatv softening2 = path->profile.softening2;
+    const Clearance of_first = clear_by(ray, pixel_step, first.s, first.distance2 + softening2, &path->profile);
+    const Clearance of_second = clear_by(ray, pixel_step, second.s, second.distance2 + softening2, &path->profile);
+    Clearance clearance = nearer_of(of_first, of_second);
     if (SERIES_LENGTH(path)) {
         const float pieces = (float)SERIES_LENGTH(path);
-        clearance.seen[0] = pieces * select(first.x, second.x, to_second2 < to_first2);
+        clearance.seen[0] = pieces * select(first.x, second.x, of_second.distance2 < of_first.distance2);
         clearance.seen[1] = pieces * curve_seen_from(path, splat(0.0f)).x;
         clearance.seen[2] = pieces * curve_seen_from(path, ray->end).x;
     }

@@ -13,39 +13,38 @@ typedef struct Cylinder {
     float4 point, point_rest;         // the point of the line nearest to the eye
     float4 direction, direction_rest; // unit
     float4 emission;
-    uint is_square;
-    uint padding_0, padding_1, padding_2;
+    Falloff falloff;
 } Cylinder;
 CHECK_SIZE(Cylinder, SIZEOF_CYLINDER);
 
 // Lengths are doubled.
 typedef struct {
     Quadratic distance2;
-    floatv floor2;
-    uint is_square;
+    Profile profile;
 } cylinder_path;
 
 PER_RAY_IF_WIDE cylinder_path cylinder_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Cylinder *const cylinder = &sources->cylinder_list[index];
-    const Quadratic distance2 =
-        distance2_to_line(ray, cylinder->point, cylinder->point_rest, cylinder->direction, cylinder->direction_rest);
-    const cylinder_path path = {distance2, 4.0f * ray->floor2, IS_SQUARE(cylinder)};
+    cylinder_path path;
+    path.profile = profile_of(ray, &cylinder->falloff);
+    path.distance2 = distance2_to_line(ray, cylinder->point, cylinder->point_rest, cylinder->direction,
+                                       cylinder->direction_rest, path.profile.softening2);
     return path;
 }
 
 floatv cylinder_field(const cylinder_path *const path, const floatv s) {
-    return profiled(twice_inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2)), IS_SQUARE(path));
+    return field_at(&path->profile, quadratic_at(&path->distance2, s));
 }
 
 PER_RAY_IF_WIDE floatv cylinder_integral(const Ray *const ray, const Sources *const sources, const uint index,
                                          const Quadrature *const quadrature) {
     const cylinder_path path = cylinder_along(ray, sources, index);
     const Stretch all = evenly_lit(splat(0.0f), ray->end);
-    return integral_over(all, &path.distance2, path.floor2, quadrature->decay, IS_SQUARE(&path));
+    return integral_over(all, &path.distance2, &path.profile, quadrature);
 }
 
 Clearance cylinder_clearance(const Ray *const ray, const Sources *const sources, const uint index,
                              const float pixel_step) {
     const cylinder_path path = cylinder_along(ray, sources, index);
-    return quadratic_clearance(ray, &path.distance2, pixel_step);
+    return quadratic_clearance(ray, &path.distance2, &path.profile, pixel_step);
 }

@@ -8,6 +8,7 @@
 #define KIND_along JOIN(KIND, _along)
 #define KIND_field JOIN(KIND, _field)
 #define KIND_integral JOIN(KIND, _integral)
+#define KIND_integral_of JOIN(KIND, _integral_of)
 #define KIND_clearance JOIN(KIND, _clearance)
 
 // What a kind says of itself: #define curve_has_kinks 1. A kind that says nothing does not have it.
@@ -20,6 +21,7 @@
 #define KIND_near JOIN(KIND, _near)
 #define KIND_approach JOIN(KIND, _approach)
 #define KIND_near_field JOIN(KIND, _near_field)
+#define KIND_edge_distance2 JOIN(KIND, _edge_distance2) // -D SHAPES
 
 // What it has in addition, if it says so.
 #define KIND_look_ahead JOIN(KIND, _look_ahead) // KIND_HAS(look_ahead)
@@ -37,7 +39,9 @@
 // What the templates make of that.
 #define KIND_emission JOIN(KIND, _emission) // ../radiance.h
 #define KIND_simpson JOIN(KIND, _simpson)   // ../quadrature/simpson.h
-#define KIND_panel JOIN(KIND, _panel)       // ../quadrature/adaptive.h, with what follows
+#define KIND_edge JOIN(KIND, _edge)
+#define KIND_trim JOIN(KIND, _trim)
+#define KIND_panel JOIN(KIND, _panel) // ../quadrature/adaptive.h, with what follows
 #define KIND_open_panel JOIN(KIND, _open_panel)
 #define KIND_sum_panel JOIN(KIND, _sum_panel)
 #define KIND_two_panels JOIN(KIND, _two_panels)

@@ -48,9 +48,10 @@ floatv length3(const float3v v) {
     return 0.5f * twice_sqrt(max(dot3(v, v), 1e-36f));
 }
 
-// Returns the same with all lengths doubled, softened.
+// Returns the same with all lengths doubled, softened; the softening's is doubled already.
 Quadratic doubled(const Quadratic q, const floatv softening2) {
-    const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, 4.0f * (q.least + softening2), q.nearest, 2.0f * q.ahead};
+    const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, fma(splat(4.0f), q.least, softening2), q.nearest,
+                         2.0f * q.ahead};
     return d;
 }
 
@@ -59,13 +60,14 @@ floatv quadratic_at(const Quadratic *const q, const floatv s) {
     return fma(x, x, q->least);
 }
 
-// Returns the squared distance from a ray to a point.
-INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, const float4 point_rest) {
+// Returns the squared distance from a ray to a point, doubled, with the softening of a profile.
+INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, const float4 point_rest,
+                                    const floatv softening2) {
     const float3v from_point = subtract3(ray->origin, uniform3(point));
     Quadratic distance2 = squared_length_along(from_point, ray->span, ray->length);
     const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
     refine(&distance2, from_fine3(closest), ray->span);
-    return doubled(distance2, ray->softening2);
+    return doubled(distance2, softening2);
 }
 
 // The sine of the angle between a ray and a line below which float32 has too few digits of it.
@@ -74,7 +76,7 @@ INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, co
 // Returns the squared distance from a ray to a line. The distance of P is |(P - M) x D|, a cross product instead of the
 // difference of squares that Watanabe, Abe, Konno 2015, eq. 3 prints, which cancels near the line.
 INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, const float4 point_rest,
-                                   const float4 direction, const float4 direction_rest) {
+                                   const float4 direction, const float4 direction_rest, const floatv softening2) {
     const float3v along = uniform3(direction);
     const fine3v fine_along = fine3(direction, direction_rest);
     const float3v from_point = subtract3(ray->origin, uniform3(point));
@@ -90,5 +92,5 @@ INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, con
     Quadratic distance2 = squared_length_along(start, span, length3(span));
     const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
     refine(&distance2, from_fine3(fine_cross3(closest, fine_along)), span);
-    return doubled(distance2, ray->softening2);
+    return doubled(distance2, softening2);
 }

@@ -16,8 +16,7 @@ typedef struct Segment {
     float4 point, point_rest;         // the point of the whole line nearest to the eye
     float4 direction, direction_rest; // unit, from one end to the other
     float4 emission;
-    uint is_square;
-    uint padding_0, padding_1, padding_2;
+    Falloff falloff;
 } Segment;
 CHECK_SIZE(Segment, SIZEOF_SEGMENT);
 
@@ -25,26 +24,25 @@ CHECK_SIZE(Segment, SIZEOF_SEGMENT);
 typedef struct {
     Quadratic to_line, to_first, to_last; // squared distances: to the line, and to its ends
     Height over_first, over_last;         // over the planes through the ends, along the line
-    floatv floor2;
-    uint is_square;
+    Profile profile;
 } segment_path;
 
 PER_RAY_IF_WIDE segment_path segment_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Segment *const segment = &sources->segment_list[index];
     const fine3v direction = fine3(segment->direction, segment->direction_rest);
     segment_path path;
-    path.to_line =
-        distance2_to_line(ray, segment->point, segment->point_rest, segment->direction, segment->direction_rest);
-    path.to_first = distance2_to_point(ray, segment->from, segment->from_rest);
-    path.to_last = distance2_to_point(ray, segment->to, segment->to_rest);
+    path.profile = profile_of(ray, &segment->falloff);
+    const floatv softening2 = path.profile.softening2;
+    path.to_line = distance2_to_line(ray, segment->point, segment->point_rest, segment->direction,
+                                     segment->direction_rest, softening2);
+    path.to_first = distance2_to_point(ray, segment->from, segment->from_rest, softening2);
+    path.to_last = distance2_to_point(ray, segment->to, segment->to_rest, softening2);
     path.over_first = height_over(ray, segment->from, segment->from_rest, direction);
     path.over_last = height_over(ray, segment->to, segment->to_rest, direction);
     // A ray within one of the planes is level with the other.
     const intv is_level = (path.over_first.slope == 0.0f) | (path.over_last.slope == 0.0f);
     path.over_first.slope = select(path.over_first.slope, splat(0.0f), is_level);
     path.over_last.slope = select(path.over_last.slope, splat(0.0f), is_level);
-    path.floor2 = 4.0f * ray->floor2;
-    path.is_square = IS_SQUARE(segment);
     return path;
 }
 
@@ -53,7 +51,7 @@ floatv segment_field(const segment_path *const path, const floatv s) {
     const floatv beside = quadratic_at(&path->to_line, s);
     const floatv before = quadratic_at(&path->to_first, s), beyond = quadratic_at(&path->to_last, s);
     const floatv distance2 = select(select(beside, beyond, over_last > 0.0f), before, over_first < 0.0f);
-    return profiled(twice_inverse_sqrt(max(distance2, path->floor2)), IS_SQUARE(path));
+    return field_at(&path->profile, distance2);
 }
 
 INLINE Quadratic segment_select(const Quadratic a, const Quadratic b, const intv is_b) {
@@ -66,11 +64,10 @@ INLINE Quadratic segment_select(const Quadratic a, const Quadratic b, const intv
 PER_RAY_IF_WIDE floatv segment_integral(const Ray *const ray, const Sources *const sources, const uint index,
                                         const Quadrature *const quadrature) {
     const segment_path path = segment_along(ray, sources, index);
-    const Decay decay = quadrature->decay;
     const intv is_falling = path.over_first.slope <= -1e-30f;
     __global const Segment *const segment = &sources->segment_list[index];
     const fine3v direction = fine3(segment->direction, segment->direction_rest);
-    const floatv close2 = FLOORS_OFF * FLOORS_OFF * path.floor2;
+    const floatv close2 = FLOORS_OFF * FLOORS_OFF * path.profile.floor2;
     Cut at_first = climbs_through(&path.over_first, ray->end), at_last = climbs_through(&path.over_last, ray->end);
     refine_cut(&at_first, ray, &path.over_first, segment->from, segment->from_rest, direction,
                path.to_first.least < close2);
@@ -80,9 +77,9 @@ PER_RAY_IF_WIDE floatv segment_integral(const Ray *const ray, const Sources *con
               leaves = select_cut(at_last, at_first, is_last_first);
     const Quadratic to_near = segment_select(path.to_first, path.to_last, is_falling);
     const Quadratic to_far = segment_select(path.to_last, path.to_first, is_falling);
-    return integral_over(between(cut_at(splat(0.0f)), enters), &to_near, path.floor2, decay, IS_SQUARE(&path)) +
-           integral_over(between(enters, leaves), &path.to_line, path.floor2, decay, IS_SQUARE(&path)) +
-           integral_over(between(leaves, cut_at(ray->end)), &to_far, path.floor2, decay, IS_SQUARE(&path));
+    return integral_over(between(cut_at(splat(0.0f)), enters), &to_near, &path.profile, quadrature) +
+           integral_over(between(enters, leaves), &path.to_line, &path.profile, quadrature) +
+           integral_over(between(leaves, cut_at(ray->end)), &to_far, &path.profile, quadrature);
 }
 
 // Returns the clearance of the line where the ray passes between the ends, else of the nearer end. Lengths are doubled.
@@ -91,8 +88,8 @@ Clearance segment_clearance(const Ray *const ray, const Sources *const sources, 
     const segment_path path = segment_along(ray, sources, index);
     const floatv s = clamp(path.to_line.nearest, 0.0f, ray->end);
     const intv is_beside = (height_at(&path.over_first, s) >= 0.0f) & (height_at(&path.over_last, s) <= 0.0f);
-    const floatv of_line = quadratic_clearance(ray, &path.to_line, pixel_step).distance2;
-    const floatv of_first = quadratic_clearance(ray, &path.to_first, pixel_step).distance2;
-    const floatv of_ends = min(of_first, quadratic_clearance(ray, &path.to_last, pixel_step).distance2);
-    return clear_by(select(of_ends, min(of_line, of_ends), is_beside));
+    const Clearance of_line = quadratic_clearance(ray, &path.to_line, &path.profile, pixel_step);
+    const Clearance of_ends = nearer_of(quadratic_clearance(ray, &path.to_first, &path.profile, pixel_step),
+                                        quadratic_clearance(ray, &path.to_last, &path.profile, pixel_step));
+    return select_clearance(of_ends, nearer_of(of_line, of_ends), is_beside);
 }

@@ -2,7 +2,7 @@
 // brings: X(kind, Type, number) for every kind that the scene has, in the order of the whole table.
 //
 // Every source has an emission, colour times coefficient, linear RGB (times |E - S| where light is measured by length),
-// and is_square, 1 if its field is 1 over the squared distance.
+// and a falloff, which says how its field falls off with the distance.
 #pragma once
 #include "../types.h"
 

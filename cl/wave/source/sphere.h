@@ -11,38 +11,37 @@
 typedef struct Sphere {
     float4 center, center_rest;
     float4 emission;
-    uint is_square;
-    uint padding_0, padding_1, padding_2;
+    Falloff falloff;
 } Sphere;
 CHECK_SIZE(Sphere, SIZEOF_SPHERE);
 
 // Lengths are doubled.
 typedef struct {
     Quadratic distance2;
-    floatv floor2;
-    uint is_square;
+    Profile profile;
 } sphere_path;
 
 INLINE sphere_path sphere_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Sphere *const sphere = &sources->sphere_list[index];
-    const sphere_path path = {distance2_to_point(ray, sphere->center, sphere->center_rest), 4.0f * ray->floor2,
-                              IS_SQUARE(sphere)};
+    sphere_path path;
+    path.profile = profile_of(ray, &sphere->falloff);
+    path.distance2 = distance2_to_point(ray, sphere->center, sphere->center_rest, path.profile.softening2);
     return path;
 }
 
 floatv sphere_field(const sphere_path *const path, const floatv s) {
-    return profiled(twice_inverse_sqrt(max(quadratic_at(&path->distance2, s), path->floor2)), IS_SQUARE(path));
+    return field_at(&path->profile, quadratic_at(&path->distance2, s));
 }
 
 PER_RAY_IF_WIDE floatv sphere_integral(const Ray *const ray, const Sources *const sources, const uint index,
                                        const Quadrature *const quadrature) {
     const sphere_path path = sphere_along(ray, sources, index);
     const Stretch all = evenly_lit(splat(0.0f), ray->end);
-    return integral_over(all, &path.distance2, path.floor2, quadrature->decay, IS_SQUARE(&path));
+    return integral_over(all, &path.distance2, &path.profile, quadrature);
 }
 
 Clearance sphere_clearance(const Ray *const ray, const Sources *const sources, const uint index,
                            const float pixel_step) {
     const sphere_path path = sphere_along(ray, sources, index);
-    return quadratic_clearance(ray, &path.distance2, pixel_step);
+    return quadratic_clearance(ray, &path.distance2, &path.profile, pixel_step);
 }

@@ -22,11 +22,12 @@ typedef struct Torus {
     float4 axis, axis_rest; // unit
     float4 emission;
     float major_radius, major_radius_rest;
-    uint is_square;
-    uint padding;
+    uint padding_0, padding_1;
+    Falloff falloff;
 } Torus;
 CHECK_SIZE(Torus, SIZEOF_TORUS);
 
+#define torus_has_peaks_along 1
 #define torus_has_two_panels 1 // on both sides of the axis
 
 // Lengths are doubled, but for rho^2, whose root doubles.
@@ -34,8 +35,7 @@ typedef struct {
     Quadratic rho2;
     floatv height, height_slope;
     float major_radius;
-    floatv softening2, floor2;
-    uint is_square;
+    Profile profile;
 } torus_path;
 
 INLINE torus_path torus_along(const Ray *const ray, const Sources *const sources, const uint index) {
@@ -44,25 +44,37 @@ INLINE torus_path torus_along(const Ray *const ray, const Sources *const sources
     const float3v from_center = subtract3(ray->origin, uniform3(torus->center));
     const float3v span = cross3(ray->span, axis);
     const torus_path path = {squared_length_along(cross3(from_center, axis), span, length3(span)),
-                             2.0f * dot3(from_center, axis),
-                             2.0f * dot3(ray->span, axis),
-                             2.0f * torus->major_radius,
-                             4.0f * ray->softening2,
-                             4.0f * ray->floor2,
-                             IS_SQUARE(torus)};
+                             2.0f * dot3(from_center, axis), 2.0f * dot3(ray->span, axis), 2.0f * torus->major_radius,
+                             profile_of(ray, &torus->falloff)};
     return path;
 }
 
 floatv torus_field(const torus_path *const path, const floatv s) {
     const floatv from_ring = twice_sqrt_less(quadratic_at(&path->rho2, s), splat(path->major_radius));
     const floatv height = fma(path->height_slope, s, path->height);
-    const floatv distance2 = fma(from_ring, from_ring, fma(height, height, path->softening2));
-    return profiled(twice_inverse_sqrt(max(distance2, path->floor2)), IS_SQUARE(path));
+    const floatv distance2 = fma(from_ring, from_ring, fma(height, height, path->profile.softening2));
+    return field_at(&path->profile, distance2);
 }
+
+#ifdef SHAPES
+// Returns the squared distance at s, without softening, its slope there, and the square of how fast the way to the ring
+// changes.
+INLINE floatv torus_offset2(const torus_path *const path, const floatv s, floatv *const slope, floatv *const speed2) {
+    const floatv across = fma(path->rho2.slope, s, path->rho2.offset);
+    const floatv rho = twice_sqrt(fma(across, across, path->rho2.least));
+    const floatv height = fma(path->height_slope, s, path->height);
+    const floatv from_ring = rho - path->major_radius;
+    const floatv rho_slope = 4.0f * across * path->rho2.slope * inverse(rho);
+    *slope = 2.0f * fma(from_ring, rho_slope, height * path->height_slope);
+    *speed2 = fma(rho_slope, rho_slope, path->height_slope * path->height_slope);
+    return fma(from_ring, from_ring, height * height);
+}
+#endif
 
 typedef struct {
     torus_path path;
     Peak first, second;
+    floatv begin, end; // where the ray is lit
     const Ray *ray;
     __global const Torus *torus;
 } torus_peaks;
@@ -93,7 +105,7 @@ INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const 
     const floatv root_im = select(copysign(larger, im), smaller, re > 0.0f);
     const floatv middle = to_nearest * per_length;
     const floatv lift = radius * climb;
-    const floatv blur2 = ray->softening2 + 0.5f * ray->floor2;
+    const floatv blur2 = 0.25f * peaks.path.profile.softening2 + 0.5f * ray->floor2;
     const floatv below = lift - root_im, above = lift + root_im;
     peaks.first.re = middle - root_re;
     peaks.second.re = middle + root_re;
@@ -101,16 +113,26 @@ INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const 
     peaks.second.im = 0.5f * twice_sqrt(fma(above, above, blur2)) * per_length;
     peaks.first.is_flat = below * below < ray->floor2;
     peaks.second.is_flat = above * above < ray->floor2;
+    peaks.begin = splat(0.0f), peaks.end = ray->end;
+    if (HAS_END(&peaks.path.profile))
+        clip_to_ball(ray, torus->center, radius, &peaks.path.profile, &peaks.begin, &peaks.end);
     return peaks;
 }
 
+#ifdef SHAPES
+INLINE floatv torus_edge_distance2(const torus_peaks *const peaks, const floatv s, floatv *const slope) {
+    floatv speed2;
+    return torus_offset2(&peaks->path, s, slope, &speed2);
+}
+#endif
+
 // Cuts the ray into panels, the last one first.
-INLINE uint torus_panels(const torus_peaks *const peaks, const Decay decay, floatv *const from, floatv *const to,
-                         floatv *const integral) {
+INLINE uint torus_panels(const torus_peaks *const peaks, const Quadrature *const quadrature, floatv *const from,
+                         floatv *const to, floatv *const integral) {
     const Quadratic *const rho2 = &peaks->path.rho2;
-    to[0] = peaks->ray->end;
-    to[1] = from[0] = clamp(rho2->nearest, 0.0f, to[0]);
-    from[1] = splat(0.0f);
+    to[0] = peaks->end;
+    to[1] = from[0] = clamp(rho2->nearest, peaks->begin, to[0]);
+    from[1] = peaks->begin;
     *integral = splat(0.0f);
     return 2;
 }
@@ -123,7 +145,7 @@ typedef struct {
     floatv height, height_slope;
     float major_radius;
     floatv softening2, floor2;
-    uint is_square;
+    Profile profile;
 } torus_near;
 
 INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv base) {
@@ -138,9 +160,9 @@ INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv bas
     near.excess_slope = 8.0f * near.across * near.across_slope;
     near.height = fma(path->height_slope, base, path->height);
     near.height_slope = path->height_slope;
-    near.softening2 = path->softening2;
-    near.floor2 = path->floor2;
-    near.is_square = IS_SQUARE(path);
+    near.softening2 = path->profile.softening2;
+    near.floor2 = path->profile.floor2;
+    near.profile = path->profile;
     return near;
 }
 
@@ -178,7 +200,7 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     *base = clamp(peak->re, from, to);
     torus_near near = torus_near_at(peaks, *base);
     const intv is_close =
-        max(fabs(near.excess), near.height * near.height) < (IS_SQUARE(path) ? 0.5f : 0.02f) * radius2;
+        max(fabs(near.excess), near.height * near.height) < (IS_SQUARE(&path->profile) ? 0.5f : 0.02f) * radius2;
     if (!any_lane(is_close)) {
         peak->re -= *base;
         return near;
@@ -192,7 +214,7 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     const intv is_next =
         (distance2 < 1e-4f * radius2) & (offset.slope2 > 0.2f * peaks->ray->length * peaks->ray->length);
     // A ray along the ring is within the floor, or the softening, for as long as its distance grows with the square.
-    const floatv blur2 = path->softening2 + path->floor2, blur = 0.5f * twice_sqrt(blur2);
+    const floatv blur2 = path->profile.softening2 + path->profile.floor2, blur = 0.5f * twice_sqrt(blur2);
     const floatv bend = 2.0f * near.across_slope * near.across_slope * inverse(splat(path->major_radius));
     const floatv blurred = 0.5f * twice_inverse_sqrt_(fma(bend, blur, offset.slope2)) * blur;
     peak->im = select(peak->im, max(peak->im, blurred), is_close);
@@ -209,9 +231,9 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     const floatv per_slope2 = inverse(offset.slope2);
     const floatv ahead = -fma(offset.from_ring, offset.from_ring_slope, near.height * near.height_slope) * per_slope2;
     const floatv aside = fma(offset.from_ring, near.height_slope, -near.height * offset.from_ring_slope);
-    const floatv least = fma(aside * per_slope2, aside, path->softening2);
-    const floatv lifted = floored(least, path->floor2, IS_SQUARE(path));
-    const intv is_thin = is_next & (path->floor2 < 1e-4f * radius2);
+    const floatv least = fma(aside * per_slope2, aside, path->profile.softening2);
+    const floatv lifted = floored(least, path->profile.floor2, IS_SQUARE(&path->profile));
+    const intv is_thin = is_next & (path->profile.floor2 < 1e-4f * radius2);
     near.softening2 += select(splat(0.0f), lifted - least, is_thin);
     near.floor2 = select(near.floor2, 0.5f * near.floor2, is_thin);
     peak->re = select(peak->re - *base, ahead, is_next);
@@ -230,13 +252,32 @@ INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv aside2 = fma(height, height, near->softening2);
     const floatv sum2 = sum * sum;
     const floatv scaled2 = max(fma(excess, excess, aside2 * sum2), near->floor2 * sum2);
-    return profiled(sum * coarse_twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f)), IS_SQUARE(near));
+    const floatv per_distance = sum * coarse_twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f));
+    const floatv distance2 = IS_SHAPED(&near->profile) ? scaled2 * inverse(sum2) : splat(0.0f);
+    return field_of(&near->profile, distance2, per_distance);
 }
 
 Clearance torus_clearance(const Ray *const ray, const Sources *const sources, const uint index,
                           const float pixel_step) {
     const torus_peaks peaks = torus_peaks_along(ray, sources, index);
-    return clear_by(min(peak_clearance2(ray, peaks.first, pixel_step), peak_clearance2(ray, peaks.second, pixel_step)));
+    const Profile *const profile = &peaks.path.profile;
+    Clearance clearance = nearer_of(peak_clearance(ray, peaks.first, profile, pixel_step),
+                                    peak_clearance(ray, peaks.second, profile, pixel_step));
+#ifdef SHAPES
+    // Far from the ring its peaks are not where the ray comes closest to it: Gauss-Newton steps find that.
+    floatv s[2] = {clamp(peaks.first.re, 0.0f, ray->end), clamp(peaks.second.re, 0.0f, ray->end)};
+    for (int k = 0; k < 2 && HAS_END(profile); ++k) {
+        floatv slope, speed2, distance2;
+        for (int step = 0; step < 4; ++step) {
+            torus_offset2(&peaks.path, s[k], &slope, &speed2);
+            s[k] = clamp(fma(-0.5f * slope, inverse(max(speed2, 1e-30f)), s[k]), 0.0f, ray->end);
+        }
+        distance2 = torus_offset2(&peaks.path, s[k], &slope, &speed2);
+        const Clearance found = clear_by(ray, pixel_step, s[k], distance2 + profile->softening2, profile);
+        clearance.to_light = k == 0 ? found.to_light : min(clearance.to_light, found.to_light);
+    }
+#endif
+    return clearance;
 }
 
 #ifdef EXACT

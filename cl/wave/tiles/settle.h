@@ -19,12 +19,23 @@ INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, 
         const Clearance clearance = KIND_clearance(&rays->rays[round], task->sources, index, task->pass->pixel_step);
         const float least = LEAST_CLEARANCE * (float)task->pass->size;
         show(least * least - clearance.distance2, first_ray(round), memory->excess);
+#ifdef SHAPES
+        show(clearance.to_light, first_ray(round), memory->to_light);
+#endif
 #if KIND_HAS(parts)
         for (uint k = 0; k < PLACES_SEEN; ++k)
             show(clearance.seen[k], first_ray(round), memory->seen[k]);
 #endif
     }
     meet();
+#ifdef SHAPES
+    // Beyond its reach a source adds nothing; where light ends, neighbours differ.
+    const float nearest = least_of(memory->to_light);
+    if (nearest > MOST_BETWEEN * (float)task->pass->size)
+        return true;
+    if (nearest > 0.0f || greatest_of(memory->to_light) > 0.0f)
+        return false;
+#endif
     if (!none_is_positive(memory->excess))
         return false;
 #if KIND_HAS(parts)

@@ -16,6 +16,25 @@ bool none_is_positive(__local const float *const values) {
     return none_is;
 }
 
+// How far a pixel is from the nearest node at most, in sides of a tile, with some to spare.
+#ifndef MOST_BETWEEN // a test spoils it
+#define MOST_BETWEEN 0.5f
+#endif
+
+float least_of(__local const float *const values) {
+    float least = values[0];
+    for (uint ray = 1; ray < TILE_RAYS; ++ray)
+        least = min(least, values[ray]);
+    return least;
+}
+
+float greatest_of(__local const float *const values) {
+    float greatest = values[0];
+    for (uint ray = 1; ray < TILE_RAYS; ++ray)
+        greatest = max(greatest, values[ray]);
+    return greatest;
+}
+
 // Where nodes see parts of a curve that lie farther apart than this, in pieces of its local intensity, what lies
 // between may show between the nodes: a short curve far away throws a stripe as wide as itself.
 #ifndef MOST_SPREAD

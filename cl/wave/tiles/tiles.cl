@@ -25,8 +25,11 @@ typedef struct {
     float seen[PLACES_SEEN][TILE_RAYS]; // of one source at the nodes,
     float integrals[ALL_RAYS];          // and along all rays
     float excess[ALL_RAYS];             // of what is tested over what is allowed; 16 of it
-    float light[LIGHT_OF_TILE];         // of all sources that are smooth on the tile
-    uint open[MOST_WORDS];              // a bit for each source that is not
+#ifdef SHAPES
+    float to_light[TILE_RAYS]; // of one source at the nodes, pixels
+#endif
+    float light[LIGHT_OF_TILE]; // of all sources that are smooth on the tile
+    uint open[MOST_WORDS];      // a bit for each source that is not
     uint slot;
 } TileMemory;
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::sphere::Point;
 use super::{Field, Parts, Sample, Source, crossing, nearest_to_line};
-use crate::scene::{Beam, Ray};
+use crate::scene::{Beam, Ray, SourceKind};
 
 /// The line of a beam: dark behind the tip, or fading there over the length of a taper; the direction is a unit vector.
 #[derive(Debug, Clone)]
@@ -41,7 +41,7 @@ impl Parts for Beam {
         for (field, coefficient) in lit {
             add(Source {
                 field,
-                profile: self.profile,
+                falloff: self.light().falloff,
                 emission: self.color * coefficient,
             });
         }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::scene::kinds::for_each_kind;
-use crate::scene::{Light, Profile, Ray, Scene};
+use crate::scene::{Falloff, Light, Ray, Scene};
 
 macro_rules! field_modules {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
@@ -47,7 +47,7 @@ pub struct Source {
     /// What the field falls off from.
     pub field: Box<dyn Field>,
     /// How it falls off.
-    pub profile: Profile,
+    pub falloff: Falloff,
     /// Colour times coefficient, linear RGB.
     pub emission: DVec3,
 }
@@ -57,7 +57,7 @@ impl Source {
     fn new(field: impl Field + 'static, light: Light) -> Self {
         Self {
             field: Box::new(field),
-            profile: light.profile,
+            falloff: light.falloff,
             emission: light.emission(),
         }
     }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, direction, finite, named, positive, read_vector, vector};
 
 /// A half-line of light (Abe, Watanabe 2010, eq. 6, 11, 12); `1/d^2` for `1/d` by its [`Profile`]. Ahead of the plane
@@ -26,6 +26,10 @@ pub struct Beam {
     pub sphere_coefficient: f64,
     /// How the fields fall off.
     pub profile: Profile,
+    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
+    pub radius: f64,
+    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
+    pub reach: Option<f64>,
 }
 
 /// What glows behind the tip of a beam. In files `cap_coefficient` or `taper_length`, or neither for a cap as bright as
@@ -51,6 +55,8 @@ impl Beam {
             end: BeamEnd::Cap(None),
             sphere_coefficient: 0.0,
             profile: Profile::default(),
+            radius: 0.0,
+            reach: None,
         }
     }
 
@@ -95,7 +101,11 @@ impl SourceKind for Beam {
         Light {
             coefficient: self.coefficient,
             color: self.color,
-            profile: self.profile,
+            falloff: Falloff {
+                profile: self.profile,
+                radius: self.radius,
+                reach: self.reach,
+            },
         }
     }
 
@@ -145,6 +155,10 @@ struct BeamTable {
     taper_length: Option<f64>,
     #[serde(default)]
     profile: Profile,
+    #[serde(default)]
+    radius: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    reach: Option<f64>,
 }
 
 impl TryFrom<BeamTable> for Beam {
@@ -169,6 +183,8 @@ impl TryFrom<BeamTable> for Beam {
             end,
             sphere_coefficient: table.sphere_coefficient,
             profile: table.profile,
+            radius: table.radius,
+            reach: table.reach,
         })
     }
 }
@@ -187,6 +203,8 @@ impl From<Beam> for BeamTable {
             sphere_coefficient: beam.sphere_coefficient,
             taper_length: beam.taper_length(),
             profile: beam.profile,
+            radius: beam.radius,
+            reach: beam.reach,
         }
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{Brightness, Core, Light, Profile, SourceKind, item, one, white};
+use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, item, one, white};
 use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
 
 /// A quadratic Bezier curve of light: `S(t*)/d`, or by its [`Profile`] `S(t*)/d^2`, d the distance to its nearest point
@@ -27,6 +27,12 @@ pub struct Curve {
     /// How the field falls off.
     #[serde(default)]
     pub profile: Profile,
+    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
+    #[serde(default)]
+    pub radius: f64,
+    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reach: Option<f64>,
 }
 
 impl Curve {
@@ -39,6 +45,8 @@ impl Curve {
             color: white(),
             intensity: None,
             profile: Profile::default(),
+            radius: 0.0,
+            reach: None,
         }
     }
 }
@@ -73,7 +81,11 @@ impl SourceKind for Curve {
         Light {
             coefficient: self.coefficient,
             color: self.color,
-            profile: self.profile,
+            falloff: Falloff {
+                profile: self.profile,
+                radius: self.radius,
+                reach: self.reach,
+            },
         }
     }
 

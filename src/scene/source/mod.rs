@@ -3,14 +3,15 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
 
 mod core;
+mod falloff;
 
 pub(super) use core::Core;
+pub use falloff::{Falloff, Profile};
 
 macro_rules! declare_kinds {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
@@ -20,24 +21,12 @@ macro_rules! declare_kinds {
 }
 for_each_kind!(declare_kinds);
 
-/// How a field falls off with the distance d to its core.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Profile {
-    /// `1/d` (2015, 2010).
-    #[default]
-    Inverse,
-    /// `1/d^2` (Sakai 2006).
-    InverseSquare,
-}
-
 /// What makes a source's core glow.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Light {
     pub coefficient: f64,
     pub color: DVec3,
-    pub profile: Profile,
+    pub falloff: Falloff,
 }
 
 impl Light {
@@ -79,19 +68,27 @@ pub(crate) trait SourceKind {
 /// No product on the way to a pixel may exceed this: sums of up to 1e8 such lights are still finite in float32.
 pub(crate) const BRIGHTEST: f64 = 1e30;
 
-/// The greatest value that decay times field times measure can take, on a ray through a core.
+/// What decay and measure can make of a field on a ray through a core, and how close the ray comes to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Brightness {
-    pub inverse: f64,
-    pub inverse_square: f64,
+    /// The greatest value of decay times measure.
+    pub most: f64,
+    /// World units.
+    pub least_distance: f64,
 }
 
 impl Brightness {
-    fn of(&self, profile: Profile) -> f64 {
-        match profile {
-            Profile::Inverse => self.inverse,
-            Profile::InverseSquare => self.inverse_square,
-        }
+    /// Returns the greatest value that decay times field times measure can take.
+    pub(crate) fn of(&self, falloff: Falloff) -> f64 {
+        let distance = self.least_distance.hypot(falloff.radius);
+        let field = match falloff.profile {
+            Profile::Inverse => 1.0 / distance,
+            Profile::InverseSquare => distance.powi(-2),
+            Profile::InverseCube => distance.powi(-3),
+            Profile::Gaussian => 1.0,
+            Profile::Smeared => 1.0 / falloff.radius,
+        };
+        self.most * field
     }
 
     /// Checks a light; `weight` is the greatest local intensity.
@@ -99,11 +96,12 @@ impl Brightness {
         let Light {
             coefficient,
             color,
-            profile,
+            falloff,
         } = light;
         finite("coefficient", coefficient)?;
         vector("color", color)?;
-        let brightest = self.of(profile) * weight * coefficient.abs() * color.abs().max_element();
+        falloff.check()?;
+        let brightest = self.of(falloff) * weight * coefficient.abs() * color.abs().max_element();
         if brightest > BRIGHTEST {
             return Err(Fault::new(
                 "coefficient",

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, read_vector, vector};
 
 /// A finite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point between its ends.
@@ -26,6 +26,12 @@ pub struct Segment {
     /// How the field falls off.
     #[serde(default)]
     pub profile: Profile,
+    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
+    #[serde(default)]
+    pub radius: f64,
+    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reach: Option<f64>,
 }
 
 impl Segment {
@@ -38,6 +44,8 @@ impl Segment {
             coefficient: one(),
             color: white(),
             profile: Profile::default(),
+            radius: 0.0,
+            reach: None,
         }
     }
 }
@@ -53,7 +61,11 @@ impl SourceKind for Segment {
         Light {
             coefficient: self.coefficient,
             color: self.color,
-            profile: self.profile,
+            falloff: Falloff {
+                profile: self.profile,
+                radius: self.radius,
+                reach: self.reach,
+            },
         }
     }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, one, white};
 use crate::scene::values::{Checked, read_vector, vector};
 
 /// A point of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the point M (2015, eq. 2).
@@ -20,6 +20,11 @@ pub struct Sphere {
     pub color: DVec3,
     /// How the field falls off.
     pub profile: Profile,
+    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
+    pub radius: f64,
+    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reach: Option<f64>,
 }
 
 impl Default for Sphere {
@@ -29,6 +34,8 @@ impl Default for Sphere {
             coefficient: one(),
             color: white(),
             profile: Profile::default(),
+            radius: 0.0,
+            reach: None,
         }
     }
 }
@@ -43,7 +50,11 @@ impl SourceKind for Sphere {
         Light {
             coefficient: self.coefficient,
             color: self.color,
-            profile: self.profile,
+            falloff: Falloff {
+                profile: self.profile,
+                radius: self.radius,
+                reach: self.reach,
+            },
         }
     }
 

@@ -2,11 +2,13 @@
 
 use bytemuck::Zeroable;
 
-use super::{Anchor, Pack, SplinePiece, device_struct, is_square, line, rest, scene};
+use super::{Anchor, Pack, SplinePiece, device_struct, falloff, line, rest, scene};
+use super::layout::Falloff;
+use crate::scene::SourceKind;
 
 device_struct! {
     /// A half-line of light.
-    Beam [144] {
+    Beam [160] {
         tip: [f32; 4] = 0,
         tip_rest: [f32; 4] = 16,
         point: [f32; 4] = 32,
@@ -19,9 +21,10 @@ device_struct! {
         sphere: f32 = 120,
         per_taper: f32 = 124,
         per_taper_rest: f32 = 128,
-        is_square: u32 = 132,
-        padding_0: u32 = 136,
-        padding_1: u32 = 140,
+        padding_0: u32 = 132,
+        padding_1: u32 = 136,
+        padding_2: u32 = 140,
+        falloff: Falloff = 144,
     }
 }
 
@@ -45,7 +48,7 @@ impl Pack for scene::Beam {
             sphere: self.sphere_coefficient as f32,
             per_taper: per_taper as f32,
             per_taper_rest: rest(per_taper),
-            is_square: is_square(self.profile),
+            falloff: falloff(self.light().falloff),
             ..Zeroable::zeroed()
         }
     }

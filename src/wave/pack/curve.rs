@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Anchor, Pack, SplinePiece, device_struct, fine, is_square, scene, vector};
+use super::{Anchor, Pack, SplinePiece, device_struct, fine, falloff, scene, vector};
+use super::layout::Falloff;
+use crate::scene::SourceKind;
 
 /// Below this ratio of `|C2|` to `|C'(1/2)|` a curve counts as straight: the cubic's roots would lose digits to its
 /// far-off vertex, while the kernels' foot on the tangent needs two Newton steps.
@@ -15,7 +17,7 @@ const TINY: f64 = 1e-12;
 
 device_struct! {
     /// A quadratic curve of light.
-    Curve [192] {
+    Curve [208] {
         middle: [f32; 4] = 0,
         middle_rest: [f32; 4] = 16,
         velocity: [f32; 4] = 32,
@@ -33,7 +35,8 @@ device_struct! {
         is_straight: u32 = 176,
         spline_begin: u32 = 180,
         spline_count: u32 = 184,
-        is_square: u32 = 188,
+        padding: u32 = 188,
+        falloff: Falloff = 192,
     }
 }
 
@@ -111,7 +114,8 @@ fn curve(
         is_straight: u32::from(is_straight),
         spline_begin: spline.start,
         spline_count: spline.end - spline.start,
-        is_square: is_square(curve.profile),
+        padding: 0,
+        falloff: falloff(curve.light().falloff),
     }
 }
 

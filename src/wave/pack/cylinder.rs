@@ -1,8 +1,9 @@
 //! A line of light on the device (`cl/wave/source/cylinder.h`).
 
-use bytemuck::Zeroable;
 
-use super::{Anchor, Pack, SplinePiece, device_struct, is_square, line, scene};
+use super::{Anchor, Pack, SplinePiece, device_struct, falloff, line, scene};
+use super::layout::Falloff;
+use crate::scene::SourceKind;
 
 device_struct! {
     /// A line of light.
@@ -12,10 +13,7 @@ device_struct! {
         direction: [f32; 4] = 32,
         direction_rest: [f32; 4] = 48,
         emission: [f32; 4] = 64,
-        is_square: u32 = 80,
-        padding_0: u32 = 84,
-        padding_1: u32 = 88,
-        padding_2: u32 = 92,
+        falloff: Falloff = 80,
     }
 }
 
@@ -30,8 +28,7 @@ impl Pack for scene::Cylinder {
             direction: direction.value,
             direction_rest: direction.rest,
             emission: anchor.emission(self.coefficient, self.color),
-            is_square: is_square(self.profile),
-            ..Zeroable::zeroed()
+            falloff: falloff(self.light().falloff),
         }
     }
 }

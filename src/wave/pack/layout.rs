@@ -38,6 +38,16 @@ device_struct! {
 }
 
 device_struct! {
+    /// How a source's field falls off.
+    Falloff [16] {
+        profile: u32 = 0,
+        radius2: f32 = 4,
+        per_reach2: f32 = 8,
+        per_width2: f32 = 12,
+    }
+}
+
+device_struct! {
     /// Which sources of each kind a launch takes, and where it counts.
     Launch [8 * KIND_COUNT + 4] {
         begin: [u32; KIND_COUNT] = 0,
@@ -105,6 +115,7 @@ macro_rules! list_structs {
             View::LAYOUT,
             FilmPart::LAYOUT,
             Integrand::LAYOUT,
+            Falloff::LAYOUT,
             Launch::LAYOUT,
             TilePass::LAYOUT,
             RayRecord::LAYOUT,

@@ -12,7 +12,7 @@ pub use view::{integrand, ray, view};
 
 use crate::opencl::device_struct;
 use crate::scene::kinds::{KIND_COUNT, for_each_kind};
-use crate::scene::{self, Measure, Profile, Scene, SourcesStamp};
+use crate::scene::{self, Falloff, Measure, Profile, Scene, SourcesStamp};
 use layout::SplinePiece;
 
 /// Where the float32 coordinates begin, how far the rays go from there, and what every emission is multiplied with.
@@ -135,6 +135,10 @@ pub struct SourceFacts {
     stamp: Option<SourcesStamp>,
     /// Whether any falls off with the squared distance.
     pub has_squares: bool,
+    /// Whether any has no closed form for how it falls off.
+    pub has_shapes: bool,
+    /// Whether any has a sharper peak than 1 over the distance.
+    pub has_sharp_peaks: bool,
     /// Whether some may cancel others.
     pub has_both_signs: bool,
 }
@@ -146,7 +150,9 @@ impl SourceFacts {
         if self.stamp != stamp {
             *self = Self {
                 stamp,
-                has_squares: scene.has_profile(Profile::InverseSquare),
+                has_squares: scene.any_falloff(|it| it.profile == Profile::InverseSquare),
+                has_shapes: scene.any_falloff(|it| it.is_shaped()),
+                has_sharp_peaks: scene.any_falloff(|it| it.is_sharp()),
                 has_both_signs: scene.has_light_of_both_signs(),
             };
         }
@@ -161,8 +167,33 @@ fn line(anchor: &Anchor, point: DVec3, direction: DVec3) -> (Fine, Fine) {
     (anchor.position(nearest_to_eye), fine(direction))
 }
 
-fn is_square(profile: Profile) -> u32 {
-    u32::from(profile == Profile::InverseSquare)
+/// Packs how a field falls off.
+fn falloff(falloff: Falloff) -> layout::Falloff {
+    let Falloff {
+        profile,
+        radius,
+        reach,
+    } = falloff;
+    let per_square = |length: f64| {
+        if length > 0.0 {
+            1.0 / (length * length)
+        } else {
+            0.0
+        }
+    };
+    layout::Falloff {
+        // As cl/wave/source/profile.h numbers them.
+        profile: match profile {
+            Profile::Inverse => 0,
+            Profile::InverseSquare => 1,
+            Profile::InverseCube => 2,
+            Profile::Gaussian => 3,
+            Profile::Smeared => 4,
+        },
+        radius2: (radius * radius) as f32,
+        per_reach2: reach.map_or(0.0, per_square) as f32,
+        per_width2: (0.5 * per_square(radius)) as f32,
+    }
 }
 
 /// A vector as two of float32.

@@ -1,9 +1,10 @@
 //! A finite line of light on the device (`cl/wave/source/segment.h`).
 
-use bytemuck::Zeroable;
 use glam::DVec3;
 
-use super::{Anchor, Pack, SplinePiece, device_struct, is_square, line, scene};
+use super::{Anchor, Pack, SplinePiece, device_struct, falloff, line, scene};
+use super::layout::Falloff;
+use crate::scene::SourceKind;
 
 device_struct! {
     /// A finite line of light.
@@ -17,10 +18,7 @@ device_struct! {
         direction: [f32; 4] = 96,
         direction_rest: [f32; 4] = 112,
         emission: [f32; 4] = 128,
-        is_square: u32 = 144,
-        padding_0: u32 = 148,
-        padding_1: u32 = 152,
-        padding_2: u32 = 156,
+        falloff: Falloff = 144,
     }
 }
 
@@ -42,8 +40,7 @@ impl Pack for scene::Segment {
             direction: direction.value,
             direction_rest: direction.rest,
             emission: anchor.emission(self.coefficient, self.color),
-            is_square: is_square(self.profile),
-            ..Zeroable::zeroed()
+            falloff: falloff(self.light().falloff),
         }
     }
 }

@@ -1,8 +1,9 @@
 //! A point of light on the device (`cl/wave/source/sphere.h`).
 
-use bytemuck::Zeroable;
 
-use super::{Anchor, Pack, SplinePiece, device_struct, is_square, scene};
+use super::{Anchor, Pack, SplinePiece, device_struct, falloff, scene};
+use super::layout::Falloff;
+use crate::scene::SourceKind;
 
 device_struct! {
     /// A point of light.
@@ -10,10 +11,7 @@ device_struct! {
         center: [f32; 4] = 0,
         center_rest: [f32; 4] = 16,
         emission: [f32; 4] = 32,
-        is_square: u32 = 48,
-        padding_0: u32 = 52,
-        padding_1: u32 = 56,
-        padding_2: u32 = 60,
+        falloff: Falloff = 48,
     }
 }
 
@@ -26,8 +24,7 @@ impl Pack for scene::Sphere {
             center: center.value,
             center_rest: center.rest,
             emission: anchor.emission(self.coefficient, self.color),
-            is_square: is_square(self.profile),
-            ..Zeroable::zeroed()
+            falloff: falloff(self.light().falloff),
         }
     }
 }

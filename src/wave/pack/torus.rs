@@ -1,10 +1,14 @@
 //! A ring of light on the device (`cl/wave/source/torus.h`).
 
-use super::{Anchor, Pack, SplinePiece, device_struct, fine, is_square, rest, scene};
+use bytemuck::Zeroable;
+
+use super::{Anchor, Pack, SplinePiece, device_struct, fine, falloff, rest, scene};
+use super::layout::Falloff;
+use crate::scene::SourceKind;
 
 device_struct! {
     /// A ring of light.
-    Torus [96] {
+    Torus [112] {
         center: [f32; 4] = 0,
         center_rest: [f32; 4] = 16,
         axis: [f32; 4] = 32,
@@ -12,8 +16,9 @@ device_struct! {
         emission: [f32; 4] = 64,
         major_radius: f32 = 80,
         major_radius_rest: f32 = 84,
-        is_square: u32 = 88,
-        padding: u32 = 92,
+        padding_0: u32 = 88,
+        padding_1: u32 = 92,
+        falloff: Falloff = 96,
     }
 }
 
@@ -30,8 +35,8 @@ impl Pack for scene::Torus {
             emission: anchor.emission(self.coefficient, self.color),
             major_radius: self.major_radius as f32,
             major_radius_rest: rest(self.major_radius),
-            is_square: is_square(self.profile),
-            padding: 0,
+            falloff: falloff(self.light().falloff),
+            ..Zeroable::zeroed()
         }
     }
 }

@@ -29,9 +29,9 @@ typedef struct {
     Linear p, h;                  // of the cubic u^3 + 3 p u + 2 h = 0 for u = t - 1/2 + vertex
     float velocity_along, velocity_across, bend, vertex;
     float inverse_speed2; // 1 / |C'(1/2)|^2, 0 for a point
-    uint is_straight, is_square, spline_count;
+    uint is_straight, spline_count;
     __global const SplinePiece *pieces;
-    floatv softening2, floor2;
+    Profile profile;
 } curve_path;
 
 INLINE curve_path curve_along(const Ray *const ray, const Sources *const sources, const uint index) {
@@ -47,11 +47,9 @@ INLINE curve_path curve_along(const Ray *const ray, const Sources *const sources
     path.bend = 2.0f * curve->bend;
     path.vertex = curve->vertex;
     path.is_straight = curve->is_straight;
-    path.is_square = IS_SQUARE(curve);
     path.spline_count = curve->spline_count;
     path.pieces = sources->spline_pieces + curve->spline_begin;
-    path.softening2 = 4.0f * ray->softening2;
-    path.floor2 = 4.0f * ray->floor2;
+    path.profile = profile_of(ray, &curve->falloff);
 
     // From |C2|^2 (2 u^3) + (velocity^2 - 2 bend Y) u - velocity X = 0, (X, Y) = P from the parabola's vertex.
     const float speed2 = fma(path.velocity_along, path.velocity_along, path.velocity_across * path.velocity_across);
@@ -180,7 +178,6 @@ INLINE floatv curve_field(const curve_path *const path, const floatv s) {
     const curve_point point = curve_point_at(path, s);
     floatv distance2;
     const floatv x = nearest_on_curve(path, &point, &distance2);
-    const floatv per_distance = twice_inverse_sqrt(max(distance2 + path->softening2, path->floor2));
-    const floatv field = profiled(per_distance, IS_SQUARE(path));
+    const floatv field = field_at(&path->profile, distance2 + path->profile.softening2);
     return SERIES_LENGTH(path) ? field * curve_intensity(path, x) : field;
 }

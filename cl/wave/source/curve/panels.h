@@ -131,8 +131,8 @@ CALL_IF_SCALAR intv curve_is_closed(const curve_peaks *const peaks, const floatv
 }
 
 // Returns the integral of a panel from all of which the end of the curve at x is the nearest point.
-CALL_IF_SCALAR floatv curve_closed_form(const curve_peaks *const peaks, const Decay decay, const floatv x,
-                                        const floatv from, const floatv to) {
+CALL_IF_SCALAR floatv curve_closed_form(const curve_peaks *const peaks, const Quadrature *const quadrature,
+                                        const floatv x, const floatv from, const floatv to) {
     const curve_path *const path = &peaks->path;
     floatv least;
     const floatv nearest = closest_to_core(path, peaks->span2, x, &least);
@@ -142,32 +142,32 @@ CALL_IF_SCALAR floatv curve_closed_form(const curve_peaks *const peaks, const De
         const float3v span = {path->along.slope, path->across.slope, path->normal.slope};
         refine(&to_end, offset_from_core(peaks, nearest, x), span);
     }
-    to_end.least += path->softening2;
-    const floatv integral = integral_over(evenly_lit(from, to), &to_end, path->floor2, decay, IS_SQUARE(path));
+    to_end.least += path->profile.softening2;
+    const floatv integral = integral_over(evenly_lit(from, to), &to_end, &path->profile, quadrature);
     return SERIES_LENGTH(path) ? integral * curve_intensity(path, x) : integral;
 }
 
 // Finds in which lanes a panel is closed, and its integral there.
-INLINE intv curve_closed(const curve_peaks *const peaks, const Decay decay, const floatv from, const floatv to,
-                         floatv *const integral) {
+INLINE intv curve_closed(const curve_peaks *const peaks, const Quadrature *const quadrature, const floatv from,
+                         const floatv to, floatv *const integral) {
     floatv x;
     const intv is_closed = curve_is_closed(peaks, from, to, &x);
     *integral = splat(0.0f);
     if (any_lane(is_closed))
-        *integral = select(splat(0.0f), curve_closed_form(peaks, decay, x, from, to), is_closed);
+        *integral = select(splat(0.0f), curve_closed_form(peaks, quadrature, x, from, to), is_closed);
     return is_closed;
 }
 
 // Cuts the ray into panels, the last one first, and returns the integral of those that are closed: the parts that
 // belong to an end are one stretch of the ray. A lane that is done with a panel finds it empty.
-CALL_IF_SCALAR uint curve_panels(const curve_peaks *const peaks, const Decay decay, floatv *const from,
+CALL_IF_SCALAR uint curve_panels(const curve_peaks *const peaks, const Quadrature *const quadrature, floatv *const from,
                                  floatv *const to, floatv *const integral) {
     const curve_path *const path = &peaks->path;
-    const floatv end = peaks->ray->end;
-    const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), 0.0f, end);
-    const floatv b = clamp(end_cut(path, peaks->beyond_last, 0.5f), 0.0f, end);
-    const floatv c = clamp(ends_cut(peaks, peaks->beyond_first, peaks->beyond_last), 0.0f, end);
-    const floatv d = clamp(middle_cut(peaks), 0.0f, end);
+    const floatv begin = peaks->begin, end = peaks->end;
+    const floatv a = clamp(end_cut(path, peaks->beyond_first, -0.5f), begin, end);
+    const floatv b = clamp(end_cut(path, peaks->beyond_last, 0.5f), begin, end);
+    const floatv c = clamp(ends_cut(peaks, peaks->beyond_first, peaks->beyond_last), begin, end);
+    const floatv d = clamp(middle_cut(peaks), begin, end);
     const floatv less_ab = min(a, b), more_ab = max(a, b), less_cd = min(c, d), more_cd = max(c, d);
     const floatv inner = max(less_ab, less_cd), outer = min(more_ab, more_cd);
     to[0] = end;
@@ -175,9 +175,9 @@ CALL_IF_SCALAR uint curve_panels(const curve_peaks *const peaks, const Decay dec
     to[2] = from[1] = max(inner, outer);
     to[3] = from[2] = min(inner, outer);
     to[4] = from[3] = min(less_ab, less_cd);
-    from[4] = splat(0.0f);
+    from[4] = begin;
 
-    floatv first_from = end, first_to = splat(0.0f), last_from = end, last_to = splat(0.0f);
+    floatv first_from = end, first_to = begin, last_from = end, last_to = begin;
     for (uint k = 0; k < 5; ++k) {
         if (!any_lane(to[k] > from[k]))
             continue;
@@ -196,8 +196,8 @@ CALL_IF_SCALAR uint curve_panels(const curve_peaks *const peaks, const Decay dec
         const intv in_last = (from[k] >= last_from) & (to[k] <= last_to);
         to[k] = select(to[k], from[k], in_first | in_last);
     }
-    const floatv of_first = curve_closed_form(peaks, decay, splat(-0.5f), first_from, max(first_to, first_from));
-    const floatv of_last = curve_closed_form(peaks, decay, splat(0.5f), last_from, max(last_to, last_from));
+    const floatv of_first = curve_closed_form(peaks, quadrature, splat(-0.5f), first_from, max(first_to, first_from));
+    const floatv of_last = curve_closed_form(peaks, quadrature, splat(0.5f), last_from, max(last_to, last_from));
     *integral = of_first + of_last;
     return 5;
 }

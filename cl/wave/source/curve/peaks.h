@@ -14,6 +14,7 @@ typedef struct {
     floatv first_distance2, second_distance2;
     intv are_two;
     Linear beyond_first, beyond_last; // (P - C).C' at both ends
+    floatv begin, end;                // where the ray is lit
     const Ray *ray;
     __global const Curve *curve;
 } curve_peaks;
@@ -99,8 +100,29 @@ CALL_IF_SCALAR curve_peaks curve_peaks_along(const Ray *const ray, const Sources
     peaks.second = closest_to_core(path, peaks.span2, x_second, &peaks.second_distance2);
     peaks.beyond_first = beyond_end(path, -0.5f);
     peaks.beyond_last = beyond_end(path, 0.5f);
+    peaks.begin = splat(0.0f), peaks.end = ray->end;
+    if (HAS_END(&path->profile)) {
+        const float speed =
+            sqrt(path->velocity_along * path->velocity_along + path->velocity_across * path->velocity_across);
+        const float radius = 0.25f * speed + 0.125f * fabs(path->bend);
+        clip_to_ball(ray, peaks.curve->middle, radius, &path->profile, &peaks.begin, &peaks.end);
+    }
     return peaks;
 }
+
+#ifdef SHAPES
+// Returns the squared distance at s, without softening, and its slope there.
+INLINE floatv curve_edge_distance2(const curve_peaks *const peaks, const floatv s, floatv *const slope) {
+    const curve_path *const path = &peaks->path;
+    const curve_point point = curve_point_at(path, s);
+    floatv distance2;
+    const floatv x = nearest_on_curve(path, &point, &distance2);
+    const curve_offset offset = offset_from_curve(path, &point, x);
+    *slope = 2.0f * fma(offset.along, path->along.slope,
+                        fma(offset.across, path->across.slope, point.normal * path->normal.slope));
+    return distance2;
+}
+#endif
 
 // Returns L(s) - C(1/2 + x) in the curve's frame, doubled.
 CALL_IF_SCALAR float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
@@ -193,19 +215,20 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     const float3v span = {path->along.slope, path->across.slope, path->normal.slope};
     const floatv slope = fma(-missed, climb, dot3(offset, span));
     const floatv per_curvature = inverse(curvature);
-    const floatv softened = max(fma(-missed, behind, distance2), 0.0f) + path->softening2;
+    const floatv softened = max(fma(-missed, behind, distance2), 0.0f) + path->profile.softening2;
     const floatv lowest = max(fma(-slope * per_curvature, slope, softened), 0.0f);
     peak->re = -slope * per_curvature;
-    const floatv blurred = fma(max(lowest, 1e-3f * softened), per_curvature, 0.5f * path->floor2 * per_span2);
+    const floatv blurred = fma(max(lowest, 1e-3f * softened), per_curvature, 0.5f * path->profile.floor2 * per_span2);
     peak->im = 0.5f * twice_sqrt(blurred);
 
     // Where the ray runs along the curve, the floor cuts off more than a point of it.
-    const intv is_floored = lowest < path->floor2;
-    const intv is_thin = is_floored & (path->floor2 < 1e-6f * size2) & (curvature > 0.02f * peaks->span2);
+    const intv is_floored = lowest < path->profile.floor2;
+    const intv is_thin = is_floored & (path->profile.floor2 < 1e-6f * size2) & (curvature > 0.02f * peaks->span2);
     peak->is_flat = is_floored & !is_thin;
     curve_near near = {*path, x, needs_polish(path, lowest), {true, true}, {x, splat(0.0f)}};
-    near.path.softening2 += select(splat(0.0f), floored(lowest, path->floor2, IS_SQUARE(path)) - lowest, is_thin);
-    near.path.floor2 = select(path->floor2, 0.5f * path->floor2, is_thin);
+    near.path.profile.softening2 +=
+        select(splat(0.0f), floored(lowest, path->profile.floor2, IS_SQUARE(&path->profile)) - lowest, is_thin);
+    near.path.profile.floor2 = select(path->profile.floor2, 0.5f * path->profile.floor2, is_thin);
     near.path.along.at = offset.x;
     near.path.across.at = offset.y;
     near.path.normal.at = offset.z;
@@ -254,8 +277,9 @@ INLINE floatv curve_near_field(curve_near *const near, const floatv x) {
     floatv nearest = nearest_of_roots(&near->path, &point, near->counts, &distance2);
     if (near->is_polished)
         nearest = polished(&near->path, &point, nearest, &distance2);
-    const floatv per_distance = coarse_twice_inverse_sqrt(max(distance2 + near->path.softening2, near->path.floor2));
+    const floatv softened2 = distance2 + near->path.profile.softening2;
+    const floatv per_distance = coarse_twice_inverse_sqrt(max(softened2, near->path.profile.floor2));
     near->sight.x = nearest;
-    near->sight.plain = profiled(per_distance, IS_SQUARE(&near->path));
+    near->sight.plain = field_of(&near->path.profile, softened2, per_distance);
     return SERIES_LENGTH(&near->path) ? near->sight.plain * curve_intensity(&near->path, nearest) : near->sight.plain;
 }
