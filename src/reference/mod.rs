@@ -44,29 +44,11 @@ impl Integrand {
     pub fn at(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
         let floor = CORE_FLOOR * CORE_FLOOR * ray.span.length_squared();
         let sample = source.field.sample(ray.at(s));
-        let Falloff {
-            profile,
-            radius,
-            reach,
-        } = source.falloff;
+        let radius = source.falloff.radius;
         let softened = sample.distance2 + radius * radius + self.softening * self.softening;
-        let distance2 = softened.max(floor);
-        let width = std::f64::consts::SQRT_2 * radius;
-        let field = match profile {
-            Profile::Inverse => 1.0 / distance2.sqrt(),
-            Profile::InverseSquare => 1.0 / distance2,
-            Profile::InverseCube => distance2.powf(-1.5),
-            Profile::Gaussian => (-sample.distance2 / (width * width)).exp(),
-            Profile::Smeared => match sample.distance2.sqrt() {
-                0.0 => std::f64::consts::FRAC_2_SQRT_PI / width,
-                distance => libm::erf(distance / width) / distance,
-            },
-        };
-        let window = reach.map_or(1.0, |reach| {
-            (1.0 - sample.distance2 / (reach * reach)).max(0.0).powi(2)
-        });
+        let field = source.falloff.field(sample.distance2, softened.max(floor));
         let zeta = self.decay.map_or(1.0, |decay| decay.at(s));
-        zeta * sample.intensity * field * window
+        zeta * sample.intensity * field
     }
 }
 

@@ -79,6 +79,7 @@ impl Scene {
         Brightness {
             most: decay * measure.max(1.0),
             least_distance,
+            measure: self.integration.measure,
         }
     }
 

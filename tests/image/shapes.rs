@@ -4,7 +4,7 @@
 use energywave::image::{DepthAlong, compare};
 use energywave::internals::{Integrand, exact, sources};
 use energywave::scene::{
-    Beam, Cylinder, Decay, Method, Profile, Ray, Sampling, Segment, Sphere, Torus,
+    Beam, Cylinder, Decay, Measure, Method, Profile, Ray, Sampling, Segment, Sphere, Torus,
 };
 use energywave::{RadianceImage, Renderer, Scene, reference};
 use fastrand::Rng;
@@ -332,5 +332,38 @@ fn simpsons_rule_sums_shapes_as_the_reference_does() {
         let image = renderer.render(&scene).unwrap();
         let found = found(&image, &expected);
         assert!(found.max < 1e-4, "{shape:?}: {found:?}");
+    }
+}
+
+#[test]
+fn a_peak_is_the_light_straight_across_a_core_whatever_the_worlds_scale() {
+    let mut renderer = renderer(common::device().lanes, "");
+    for shape in &SHAPES[1..] {
+        if shape.profile == Profile::Smeared {
+            continue; // no reach here: its light has no limit
+        }
+        for scale in [0.01, 1.0, 100.0] {
+            let mut scene = common::empty_scene(8, 8);
+            scene.integration.method = Method::exact(1e-4);
+            scene.integration.measure = Measure::Length;
+            scene.decay = None;
+            scene.spheres.push(Sphere {
+                profile: shape.profile,
+                radius: scale * shape.radius,
+                reach: shape.reach.map(|reach| scale * reach),
+                peak: Some(0.7),
+                ..Sphere::default()
+            });
+            let ends = [-1e3, 1e3].map(|y| DVec3::new(0.0, scale * y, 0.0));
+            let across = Ray::between(ends[0], ends[1]);
+            let [[_, found, _]] = renderer.integrate(&scene, &[across]).unwrap()[..] else {
+                panic!("one ray");
+            };
+            // What lies beyond the ends of the ray is missing.
+            assert!(
+                (found - 0.7).abs() < 1e-3 * 0.7,
+                "{shape:?}, {scale}: {found}"
+            );
+        }
     }
 }

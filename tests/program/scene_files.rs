@@ -39,7 +39,8 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             color: vector(random),
             profile,
             radius: number(random),
-            reach: Some(20.0 + number(random)),
+            reach: Some(1200.0 + number(random)),
+            peak: None,
         });
         scene.cylinders.push(Cylinder {
             point: vector(random),
@@ -48,7 +49,8 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             color: vector(random),
             profile,
             radius: number(random),
-            reach: Some(20.0 + number(random)),
+            reach: Some(1200.0 + number(random)),
+            peak: None,
         });
         for end in [
             BeamEnd::Cap(None),
@@ -66,6 +68,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 profile,
                 radius: number(random),
                 reach: None,
+                peak: None,
             });
         }
         scene.segments.push(Segment {
@@ -82,7 +85,8 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             color: vector(random),
             profile,
             radius: number(random),
-            reach: Some(20.0 + number(random)),
+            reach: Some(1200.0 + number(random)),
+            peak: None,
         });
         for intensity in [None, Some(vec![0.0, 0.1, 1.0 / 3.0]), Some(vec![2.0; 9])] {
             scene.curves.push(Curve {
@@ -92,7 +96,8 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 intensity,
                 profile,
                 radius: number(random),
-                reach: Some(20.0 + number(random)),
+                reach: Some(1200.0 + number(random)),
+                peak: None,
             });
         }
     }

@@ -31,7 +31,7 @@ impl Parts for Beam {
             taper_length,
         };
         let parts: [(Box<dyn Field>, f64); 3] = [
-            (Box::new(line), self.coefficient),
+            (Box::new(line), self.light().coefficient),
             (Box::new(Cap { tip, direction }), self.cap()),
             (Box::new(Point(tip)), self.sphere_coefficient),
         ];

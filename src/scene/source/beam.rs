@@ -30,6 +30,9 @@ pub struct Beam {
     pub radius: f64,
     /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
     pub reach: Option<f64>,
+    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
+    /// It needs a radius, and where the light of the profile has no end, a reach.
+    pub peak: Option<f64>,
 }
 
 /// What glows behind the tip of a beam. In files `cap_coefficient` or `taper_length`, or neither for a cap as bright as
@@ -57,13 +60,14 @@ impl Beam {
             profile: Profile::default(),
             radius: 0.0,
             reach: None,
+            peak: None,
         }
     }
 
     /// Returns the coefficient of the sphere behind the tip; 0 where there is a taper instead.
     pub(crate) fn cap(&self) -> f64 {
         match self.end {
-            BeamEnd::Cap(coefficient) => coefficient.unwrap_or(self.coefficient),
+            BeamEnd::Cap(coefficient) => coefficient.unwrap_or(self.light().coefficient),
             BeamEnd::Taper(_) => 0.0,
         }
     }
@@ -87,30 +91,31 @@ impl SourceKind for Beam {
             BeamEnd::Cap(None) => {}
         }
         finite("sphere_coefficient", self.sphere_coefficient)?;
-        brightness.check_light(self.light(), 1.0)?;
-        let line = self.coefficient.abs().max(self.cap().abs());
+        brightness.check_light(self.light(), self.peak, 1.0)?;
+        let line = self.light().coefficient.abs().max(self.cap().abs());
         let strongest = line + self.sphere_coefficient.abs();
         let strongest = Light {
             coefficient: strongest,
             ..self.light()
         };
-        brightness.check_light(strongest, 1.0)
+        brightness.check_light(strongest, self.peak, 1.0)
     }
 
     fn light(&self) -> Light {
+        let falloff = Falloff {
+            profile: self.profile,
+            radius: self.radius,
+            reach: self.reach,
+        };
         Light {
-            coefficient: self.coefficient,
+            coefficient: falloff.coefficient(self.coefficient, self.peak),
             color: self.color,
-            falloff: Falloff {
-                profile: self.profile,
-                radius: self.radius,
-                reach: self.reach,
-            },
+            falloff,
         }
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
-        for coefficient in [self.coefficient, self.cap(), self.sphere_coefficient] {
+        for coefficient in [self.light().coefficient, self.cap(), self.sphere_coefficient] {
             add(coefficient * self.color);
         }
     }
@@ -159,6 +164,8 @@ struct BeamTable {
     radius: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     reach: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    peak: Option<f64>,
 }
 
 impl TryFrom<BeamTable> for Beam {
@@ -185,6 +192,7 @@ impl TryFrom<BeamTable> for Beam {
             profile: table.profile,
             radius: table.radius,
             reach: table.reach,
+            peak: table.peak,
         })
     }
 }
@@ -205,6 +213,7 @@ impl From<Beam> for BeamTable {
             profile: beam.profile,
             radius: beam.radius,
             reach: beam.reach,
+            peak: beam.peak,
         }
     }
 }

@@ -33,6 +33,10 @@ pub struct Curve {
     /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reach: Option<f64>,
+    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
+    /// It needs a radius, and where the light of the profile has no end, a reach.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak: Option<f64>,
 }
 
 impl Curve {
@@ -47,6 +51,7 @@ impl Curve {
             profile: Profile::default(),
             radius: 0.0,
             reach: None,
+            peak: None,
         }
     }
 }
@@ -58,7 +63,7 @@ impl SourceKind for Curve {
         }
         let series = self.intensity.iter().flatten();
         let strongest = series.fold(1.0_f64, |most, value| most.max(value.abs()));
-        brightness.check_light(self.light(), strongest)?;
+        brightness.check_light(self.light(), self.peak, strongest)?;
         let Some(series) = &self.intensity else {
             return Ok(());
         };
@@ -78,20 +83,22 @@ impl SourceKind for Curve {
     }
 
     fn light(&self) -> Light {
+        let falloff = Falloff {
+            profile: self.profile,
+            radius: self.radius,
+            reach: self.reach,
+        };
         Light {
-            coefficient: self.coefficient,
+            coefficient: falloff.coefficient(self.coefficient, self.peak),
             color: self.color,
-            falloff: Falloff {
-                profile: self.profile,
-                radius: self.radius,
-                reach: self.reach,
-            },
+            falloff,
         }
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+        let emission = self.light().emission();
         for weight in self.intensity.as_deref().unwrap_or(&[1.0]) {
-            add(self.coefficient * weight * self.color);
+            add(weight * emission);
         }
     }
 

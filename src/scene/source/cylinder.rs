@@ -31,6 +31,10 @@ pub struct Cylinder {
     /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reach: Option<f64>,
+    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
+    /// It needs a radius, and where the light of the profile has no end, a reach.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak: Option<f64>,
 }
 
 impl Cylinder {
@@ -45,6 +49,7 @@ impl Cylinder {
             profile: Profile::default(),
             radius: 0.0,
             reach: None,
+            peak: None,
         }
     }
 }
@@ -53,18 +58,19 @@ impl SourceKind for Cylinder {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("point", self.point)?;
         direction("direction", self.direction)?;
-        brightness.check_light(self.light(), 1.0)
+        brightness.check_light(self.light(), self.peak, 1.0)
     }
 
     fn light(&self) -> Light {
+        let falloff = Falloff {
+            profile: self.profile,
+            radius: self.radius,
+            reach: self.reach,
+        };
         Light {
-            coefficient: self.coefficient,
+            coefficient: falloff.coefficient(self.coefficient, self.peak),
             color: self.color,
-            falloff: Falloff {
-                profile: self.profile,
-                radius: self.radius,
-                reach: self.reach,
-            },
+            falloff,
         }
     }
 

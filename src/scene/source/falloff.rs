@@ -1,7 +1,10 @@
 //! How a field falls off with the distance to its core: a profile, the thickness of the core, and where light ends.
 
+use std::f64::consts::{FRAC_2_SQRT_PI, PI, SQRT_2};
+
 use serde::{Deserialize, Serialize};
 
+use crate::scene::Measure;
 use crate::scene::values::{Checked, Fault, finite, positive};
 
 /// How a field falls off with the distance d to its core.
@@ -41,6 +44,9 @@ pub struct Falloff {
     pub reach: Option<f64>,
 }
 
+/// Steps of the sum across a core with a reach; an even number.
+const ACROSS: u32 = 200;
+
 impl Falloff {
     /// Returns whether its integrals have no closed form on the devices.
     pub(crate) fn is_shaped(&self) -> bool {
@@ -51,6 +57,76 @@ impl Falloff {
     /// Returns whether it has a sharper peak than 1 over the distance.
     pub(crate) fn is_sharp(&self) -> bool {
         !matches!(self.profile, Profile::Inverse | Profile::Smeared)
+    }
+
+    /// Returns the coefficient with which a ray straight across the core has the light `peak`, or the one that is given.
+    pub(crate) fn coefficient(&self, given: f64, peak: Option<f64>) -> f64 {
+        peak.map_or(given, |peak| peak / self.light_across())
+    }
+
+    /// Returns the light of a ray straight across a core of coefficient 1, measured by length; infinite where it has
+    /// no limit.
+    fn light_across(&self) -> f64 {
+        let Self {
+            profile,
+            radius,
+            reach,
+        } = *self;
+        let Some(reach) = reach else {
+            return match profile {
+                Profile::Inverse | Profile::Smeared => f64::INFINITY,
+                Profile::InverseSquare => PI / radius,
+                Profile::InverseCube => 2.0 / (radius * radius),
+                Profile::Gaussian => (2.0 * PI).sqrt() * radius,
+            };
+        };
+        // Simpson's rule over u, d = radius sinh u: what is steep at the core is even in u.
+        let step = (reach / radius).asinh() / f64::from(ACROSS);
+        let light = |k: u32| {
+            let u = f64::from(k) * step;
+            let distance2 = (radius * u.sinh()).powi(2);
+            self.field(distance2, distance2 + radius * radius) * radius * u.cosh()
+        };
+        let pairs =
+            (0..ACROSS / 2).map(|k| light(2 * k) + 4.0 * light(2 * k + 1) + light(2 * k + 2));
+        2.0 * pairs.sum::<f64>() * step / 3.0
+    }
+
+    /// Returns the field of coefficient 1, from the squared distance to the core, and what profiles take for it: with
+    /// the squared radius and whatever else softens it.
+    pub(crate) fn field(&self, distance2: f64, softened2: f64) -> f64 {
+        let width = SQRT_2 * self.radius;
+        let distance = distance2.sqrt();
+        let profile = match self.profile {
+            Profile::Inverse => 1.0 / softened2.sqrt(),
+            Profile::InverseSquare => 1.0 / softened2,
+            Profile::InverseCube => softened2.powf(-1.5),
+            Profile::Gaussian => (-distance2 / (width * width)).exp(),
+            Profile::Smeared if distance == 0.0 => FRAC_2_SQRT_PI / width,
+            Profile::Smeared => libm::erf(distance / width) / distance,
+        };
+        let window = self.reach.map_or(1.0, |reach| {
+            (1.0 - distance2 / (reach * reach)).max(0.0).powi(2)
+        });
+        profile * window
+    }
+
+    /// Checks a peak that takes a coefficient's place.
+    pub(super) fn check_peak(&self, peak: f64, measure: Measure) -> Checked {
+        finite("peak", peak)?;
+        let advice = match measure {
+            Measure::Parameter => {
+                "is light measured by length: write measure = \"length\" in [integration]"
+            }
+            Measure::Length if self.radius == 0.0 => {
+                "is the light across a core, and without a thickness there is no limit to that: give a radius"
+            }
+            Measure::Length if self.light_across().is_infinite() => {
+                "has no limit along a ray without end: give a reach, at which light ends"
+            }
+            Measure::Length => return Ok(()),
+        };
+        Err(Fault::new("peak", advice))
     }
 
     /// Checks its numbers.
@@ -91,7 +167,7 @@ mod tests {
     use glam::DVec3;
 
     use crate::Scene;
-    use crate::scene::{Camera, Profile, Sphere};
+    use crate::scene::{Camera, Measure, Profile, Sphere};
 
     #[track_caller]
     fn expect(change: impl Fn(&mut Sphere), key: &str, words: &str) {
@@ -119,13 +195,23 @@ mod tests {
         expect(|it| it.profile = Profile::Smeared, "radius", "give one");
         let thick = |it: &mut Sphere| (it.radius, it.reach) = (0.5, Some(0.5));
         expect(thick, "reach", "make reach larger");
+        expect(|it| it.peak = Some(1.0), "peak", "measure = \"length\"");
         let mut scene = Scene::new(Camera::new(-4.0 * DVec3::Y, DVec3::ZERO));
+        scene.integration.measure = Measure::Length;
         scene.spheres.push(Sphere {
+            peak: Some(1.0),
             radius: 0.5,
             reach: Some(0.51),
             profile: Profile::Gaussian,
             ..Sphere::default()
         });
         scene.check().unwrap();
+        scene.spheres[0].reach = None;
+        scene.spheres[0].profile = Profile::Inverse;
+        assert!(scene.check().unwrap_err().message.contains("give a reach"));
+        scene.spheres[0].radius = 0.0;
+        assert!(scene.check().unwrap_err().message.contains("give a radius"));
+        scene.spheres[0].peak = Some(f64::INFINITY);
+        assert_eq!(scene.check().unwrap_err().key, "sphere[0].peak");
     }
 }

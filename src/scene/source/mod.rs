@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
+use super::Measure;
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
 
@@ -75,6 +76,7 @@ pub(crate) struct Brightness {
     pub most: f64,
     /// World units.
     pub least_distance: f64,
+    pub measure: Measure,
 }
 
 impl Brightness {
@@ -91,20 +93,27 @@ impl Brightness {
         self.most * field
     }
 
-    /// Checks a light; `weight` is the greatest local intensity.
-    fn check_light(&self, light: Light, weight: f64) -> Checked {
+    /// Checks a light whose coefficient is that of a peak, if there is one; `weight` is the greatest local intensity.
+    fn check_light(&self, light: Light, peak: Option<f64>, weight: f64) -> Checked {
         let Light {
             coefficient,
             color,
             falloff,
         } = light;
-        finite("coefficient", coefficient)?;
         vector("color", color)?;
         falloff.check()?;
+        match peak {
+            Some(peak) => falloff.check_peak(peak, self.measure)?,
+            None => finite("coefficient", coefficient)?,
+        }
         let brightest = self.of(falloff) * weight * coefficient.abs() * color.abs().max_element();
         if brightest > BRIGHTEST {
             return Err(Fault::new(
-                "coefficient",
+                if peak.is_some() {
+                    "peak"
+                } else {
+                    "coefficient"
+                },
                 format!(
                     "next to the core the light comes to {brightest:.0e}, more than float32 holds"
                 ),

@@ -25,6 +25,10 @@ pub struct Sphere {
     /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reach: Option<f64>,
+    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
+    /// It needs a radius, and where the light of the profile has no end, a reach.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak: Option<f64>,
 }
 
 impl Default for Sphere {
@@ -36,6 +40,7 @@ impl Default for Sphere {
             profile: Profile::default(),
             radius: 0.0,
             reach: None,
+            peak: None,
         }
     }
 }
@@ -43,18 +48,19 @@ impl Default for Sphere {
 impl SourceKind for Sphere {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("center", self.center)?;
-        brightness.check_light(self.light(), 1.0)
+        brightness.check_light(self.light(), self.peak, 1.0)
     }
 
     fn light(&self) -> Light {
+        let falloff = Falloff {
+            profile: self.profile,
+            radius: self.radius,
+            reach: self.reach,
+        };
         Light {
-            coefficient: self.coefficient,
+            coefficient: falloff.coefficient(self.coefficient, self.peak),
             color: self.color,
-            falloff: Falloff {
-                profile: self.profile,
-                radius: self.radius,
-                reach: self.reach,
-            },
+            falloff,
         }
     }
 

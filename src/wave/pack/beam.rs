@@ -43,7 +43,7 @@ impl Pack for scene::Beam {
             direction: direction.value,
             direction_rest: direction.rest,
             emission: anchor.emission(1.0, self.color),
-            line: self.coefficient as f32,
+            line: self.light().coefficient as f32,
             cap: self.cap() as f32,
             sphere: self.sphere_coefficient as f32,
             per_taper: per_taper as f32,

@@ -46,7 +46,7 @@ impl Pack for scene::Curve {
     fn pack(&self, anchor: &Anchor, pieces: &mut Vec<SplinePiece>) -> Curve {
         let begin = pieces.len();
         let [b0, b1, b2] = self.control_points;
-        let mut coefficient = self.coefficient;
+        let mut coefficient = self.light().coefficient;
         match self.intensity.as_deref() {
             // A point is nearest at t = 0, whatever the series holds beyond.
             Some([first, ..]) if b0 == b1 && b1 == b2 => coefficient *= first,

@@ -39,7 +39,7 @@ impl Pack for scene::Segment {
             point_rest: point.rest,
             direction: direction.value,
             direction_rest: direction.rest,
-            emission: anchor.emission(self.coefficient, self.color),
+            emission: anchor.emission(self.light().coefficient, self.color),
             falloff: falloff(self.light().falloff),
         }
     }

@@ -23,7 +23,7 @@ impl Pack for scene::Sphere {
         Sphere {
             center: center.value,
             center_rest: center.rest,
-            emission: anchor.emission(self.coefficient, self.color),
+            emission: anchor.emission(self.light().coefficient, self.color),
             falloff: falloff(self.light().falloff),
         }
     }

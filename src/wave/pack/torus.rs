@@ -32,7 +32,7 @@ impl Pack for scene::Torus {
             center_rest: center.rest,
             axis: axis.value,
             axis_rest: axis.rest,
-            emission: anchor.emission(self.coefficient, self.color),
+            emission: anchor.emission(self.light().coefficient, self.color),
             major_radius: self.major_radius as f32,
             major_radius_rest: rest(self.major_radius),
             falloff: falloff(self.light().falloff),
