@@ -75,6 +75,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             coefficient: number(random),
             color: vector(random),
             profile,
+            radius: number(random),
             ..Segment::new(vector(random), vector(random))
         });
         scene.tori.push(Torus {

@@ -59,7 +59,8 @@ impl Falloff {
         !matches!(self.profile, Profile::Inverse | Profile::Smeared)
     }
 
-    /// Returns the coefficient with which a ray straight across the core has the light `peak`, or the one that is given.
+    /// Returns the coefficient with which a ray straight across the core has the light `peak`; without a peak the one
+    /// that is given.
     pub(crate) fn coefficient(&self, given: f64, peak: Option<f64>) -> f64 {
         peak.map_or(given, |peak| peak / self.light_across())
     }
