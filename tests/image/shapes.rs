@@ -1,5 +1,5 @@
-//! How fields fall off: every profile, with a radius and a reach, for every kind of source. The truth is the definition,
-//! summed along rays in float64; beyond its reach a source adds exactly nothing.
+//! How fields fall off: every profile, with a radius and a reach, for every kind of source. The truth is the
+//! definition, summed along rays in float64; beyond its reach a source adds exactly nothing.
 
 use energywave::image::{DepthAlong, compare};
 use energywave::internals::{Integrand, exact, sources};

@@ -124,7 +124,7 @@ fn rich_scenes() -> Vec<Scene> {
         let mut camera = Camera::new(DVec3::X + vector(random), DVec3::ZERO);
         camera.up = vector(random);
         camera.fov_y = 20.0 + number(random).min(99.0);
-        camera.near = 0.01 * number(random);
+        camera.near = 1e-4 * number(random);
         camera.ray_length = (index % 2 == 0).then(|| number(random));
         let mut scene = Scene::new(camera);
         scene.image = ImageSize {
