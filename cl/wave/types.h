@@ -21,10 +21,10 @@ CHECK_SIZE(Integrand, SIZEOF_INTEGRAND);
 
 // How a source's field falls off.
 typedef struct {
-    uint profile;     // 0: 1/q, 1: 1/q^2, 2: 1/q^3, of q^2 = d^2 + radius^2; 3: a Gaussian of d, 4: 1/d smeared by it
-    float radius2;    // squared radius of the core; 0: it has none
-    float per_reach2; // 1 over the squared distance at which the light ends; 0: nowhere
-    float per_width2; // 1 / (2 radius^2); 0 without
+    uint profile;  // 0: 1/q, 1: 1/q^2, 2: 1/q^3, of q^2 = d^2 + radius^2; 3: a Gaussian of d, 4: 1/d smeared by it
+    float radius2; // squared radius of the core; 0: it has none
+    float reach2;  // squared distance at which the light ends; 0: nowhere
+    float reach2_rest;
 } Falloff;
 CHECK_SIZE(Falloff, SIZEOF_FALLOFF);
 

@@ -11,6 +11,7 @@ typedef struct {
     Stretch stretch;
     Quadratic distance2;
     Profile profile;
+    floatv left2; // what the least squared distance lacks to where light ends
 } stretch_peaks;
 
 INLINE uint stretch_panels(const stretch_peaks *const peaks, const Quadrature *const quadrature, floatv *const from,
@@ -25,7 +26,7 @@ INLINE uint stretch_panels(const stretch_peaks *const peaks, const Quadrature *c
 // The stretch beside a point of the ray. Lengths are doubled.
 typedef struct {
     floatv ahead, slope, least; // squared distance (ahead + slope x)^2 + least
-    floatv light, growth;
+    floatv light, growth, left2;
     Profile profile;
 } stretch_near;
 
@@ -42,6 +43,7 @@ INLINE stretch_near stretch_approach(const stretch_peaks *const peaks, const flo
     near.growth = (stretch->light_to - stretch->light_from) * inverse(max(stretch->to - stretch->from, 1e-30f));
     near.light = fma(near.growth, *base - stretch->from, stretch->light_from);
     near.profile = peaks->profile;
+    near.left2 = peaks->left2;
     peak->re = -near.ahead * per_slope;
     peak->im = 0.5f * twice_sqrt(max(near.least, peaks->profile.floor2)) * per_slope;
     peak->is_flat = near.least < peaks->profile.floor2;
@@ -53,9 +55,11 @@ INLINE floatv stretch_near_field(const stretch_near *const near, const floatv x)
     const floatv ahead = fma(near->slope, x, near->ahead);
     const floatv distance2 = fma(ahead, ahead, near->least);
     const floatv per_distance = coarse_twice_inverse_sqrt(max(distance2, near->profile.floor2));
-    return fma(near->growth, x, near->light) * field_of(&near->profile, distance2, per_distance);
+    const floatv left2 = max(fma(-ahead, ahead, near->left2), 0.0f);
+    return fma(near->growth, x, near->light) * shaped(&near->profile, distance2, left2, per_distance);
 }
 
+#define stretch_has_kinks 1 // a window is less smooth than a peak
 #define KIND stretch
 #include "adaptive.h" // stretch_integral_of
 #undef KIND
@@ -63,12 +67,12 @@ INLINE floatv stretch_near_field(const stretch_near *const near, const floatv x)
 // Integrates over what is lit of a stretch.
 CALL_IF_SCALAR floatv shape_over(const Stretch whole, const Quadratic *const distance2, const Profile *const profile,
                                  const Quadrature *const quadrature) {
-    stretch_peaks peaks = {whole, *distance2, *profile};
+    const floatv left2 = (profile->end2 - distance2->bare) + (profile->end2_rest - distance2->bare_rest);
+    stretch_peaks peaks = {whole, *distance2, *profile, left2};
     if (HAS_END(profile)) {
-        const floatv reach2 = profile->end2 + profile->softening2 - distance2->least;
-        const intv is_lit = reach2 > 0.0f;
+        const intv is_lit = left2 > 0.0f;
         const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
-        const floatv half_length = 0.5f * twice_sqrt(max(reach2, 1e-30f)) * per_slope;
+        const floatv half_length = 0.5f * twice_sqrt(max(left2, 1e-30f)) * per_slope;
         const floatv middle = fma(-distance2->ahead, per_slope, distance2->nearest);
         const floatv from = max(whole.from, middle - half_length), to = min(whole.to, middle + half_length);
         const intv is_there = is_lit & (to > from);

@@ -15,7 +15,7 @@ typedef struct {
 #ifdef SHAPES
     uint number;                  // as types.h says
     float per_reach2, per_width2; // 1 over the squared reach, and over twice the squared width of a Gaussian
-    float end2;                   // squared distance at which the light ends, without softening
+    float end2, end2_rest;        // squared distance at which light ends, without softening; what float32 leaves of it
 #endif
 } Profile;
 
@@ -48,11 +48,12 @@ INLINE Profile profile_of(const Ray *const ray, __global const Falloff *const fa
     profile.is_square = falloff->profile == 1u;
 #ifdef SHAPES
     profile.number = falloff->profile;
-    profile.per_reach2 = 0.25f * falloff->per_reach2;
-    profile.per_width2 = 0.25f * falloff->per_width2;
+    profile.per_reach2 = falloff->reach2 > 0.0f ? 0.25f / falloff->reach2 : 0.0f;
+    profile.per_width2 = falloff->radius2 > 0.0f ? 0.125f / falloff->radius2 : 0.0f;
     profile.end2 = profile.number == 3u ? 4.0f * GAUSSIAN_END * GAUSSIAN_END * falloff->radius2 : ENDLESS;
-    if (profile.per_reach2 > 0.0f)
-        profile.end2 = min(profile.end2, 1.0f / profile.per_reach2);
+    profile.end2_rest = 0.0f;
+    if (falloff->reach2 > 0.0f && 4.0f * falloff->reach2 <= profile.end2)
+        profile.end2 = 4.0f * falloff->reach2, profile.end2_rest = 4.0f * falloff->reach2_rest;
 #endif
     return profile;
 }
@@ -81,8 +82,16 @@ floatv error_function_ratio(const floatv x) {
     return select(far, 1.128379167f * fma(series, x2, splat(1.0f)), x2 < 0.25f);
 }
 
-// Returns the field of any shape, from the squared distance with softening, and 1 over the distance.
-INLINE floatv shaped(const Profile *const profile, const floatv distance2, const floatv per_distance) {
+// Returns what a squared distance with softening lacks to where light ends, a reach; 0 beyond.
+INLINE floatv left_of(const Profile *const profile, const floatv distance2) {
+    const floatv bare2 = distance2 - profile->softening2;
+    return max((profile->end2 - bare2) + profile->end2_rest, 0.0f);
+}
+
+// Returns the field of any shape, from the squared distance with softening, what it lacks to where light ends, and 1
+// over the distance.
+INLINE floatv shaped(const Profile *const profile, const floatv distance2, const floatv left2,
+                     const floatv per_distance) {
     const floatv bare2 = max(distance2 - profile->softening2, 0.0f);
     floatv field;
     switch (profile->number) {
@@ -103,7 +112,11 @@ INLINE floatv shaped(const Profile *const profile, const floatv distance2, const
         field = per_width * error_function_ratio(0.5f * per_width * 0.5f * twice_sqrt(max(bare2, 1e-30f)));
     }
     }
-    const floatv inside = max(fma(bare2, splat(-profile->per_reach2), splat(1.0f)), 0.0f);
+    floatv inside = splat(1.0f);
+    if (profile->per_reach2 > 0.0f) // a Gaussian may end before its reach
+        inside = profile->end2 * profile->per_reach2 > 0.999f
+                     ? left2 * profile->per_reach2
+                     : max(fma(bare2, splat(-profile->per_reach2), splat(1.0f)), 0.0f);
 #ifndef window2 // a test spoils it
 #define window2 (inside * inside)
 #endif
@@ -115,7 +128,7 @@ INLINE floatv shaped(const Profile *const profile, const floatv distance2, const
 INLINE floatv field_of(const Profile *const profile, const floatv distance2, const floatv per_distance) {
 #ifdef SHAPES
     if (IS_SHAPED(profile))
-        return shaped(profile, distance2, per_distance);
+        return shaped(profile, distance2, left_of(profile, distance2), per_distance);
 #endif
 #ifdef INVERSE_SQUARES
     return profiled(per_distance, profile->is_square);

@@ -11,6 +11,9 @@ typedef struct {
     floatv offset;
     floatv least;          // never 0: its root may be divided by
     floatv nearest, ahead; // the parameter of the least, or next to it, and slope s + offset there
+#ifdef SHAPES
+    floatv bare, bare_rest; // the least without softening, and what float32 leaves of it
+#endif
 } Quadratic;
 
 // Returns |start + s span|^2 for a span of length `slope`.
@@ -39,6 +42,15 @@ INLINE void refine(Quadratic *const q, const float3v at_nearest, const float3v s
     }
 }
 
+#ifdef SHAPES
+// Refines the least further: where light ends, its last digits count.
+INLINE void refine_bare(Quadratic *const q, const fine3v at_nearest) {
+    const floatv rest = from_finev(fine_subtract(fine_dot3(at_nearest, at_nearest), to_finev(q->least)));
+    q->bare = q->least;
+    q->bare_rest = select(fma(-q->ahead, q->ahead, rest), splat(0.0f), fabs(q->nearest) > 1e3f);
+}
+#endif
+
 // Returns slope s + offset at the parameter s + rest, with all digits next to the least.
 floatv along_at(const Quadratic *const q, const floatv s, const floatv rest) {
     return fma(q->slope, (s - q->nearest) + rest, q->ahead);
@@ -50,8 +62,10 @@ floatv length3(const float3v v) {
 
 // Returns the same with all lengths doubled, softened; the softening's is doubled already.
 Quadratic doubled(const Quadratic q, const floatv softening2) {
-    const Quadratic d = {2.0f * q.slope, 2.0f * q.offset, fma(splat(4.0f), q.least, softening2), q.nearest,
-                         2.0f * q.ahead};
+    Quadratic d = {2.0f * q.slope, 2.0f * q.offset, fma(splat(4.0f), q.least, softening2), q.nearest, 2.0f * q.ahead};
+#ifdef SHAPES
+    d.bare = 4.0f * q.bare, d.bare_rest = 4.0f * q.bare_rest;
+#endif
     return d;
 }
 
@@ -67,6 +81,9 @@ INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, co
     Quadratic distance2 = squared_length_along(from_point, ray->span, ray->length);
     const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
     refine(&distance2, from_fine3(closest), ray->span);
+#ifdef SHAPES
+    refine_bare(&distance2, closest);
+#endif
     return doubled(distance2, softening2);
 }
 
@@ -91,6 +108,10 @@ INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, con
     }
     Quadratic distance2 = squared_length_along(start, span, length3(span));
     const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
-    refine(&distance2, from_fine3(fine_cross3(closest, fine_along)), span);
+    const fine3v beside = fine_cross3(closest, fine_along);
+    refine(&distance2, from_fine3(beside), span);
+#ifdef SHAPES
+    refine_bare(&distance2, beside);
+#endif
     return doubled(distance2, softening2);
 }

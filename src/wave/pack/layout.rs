@@ -42,8 +42,8 @@ device_struct! {
     Falloff [16] {
         profile: u32 = 0,
         radius2: f32 = 4,
-        per_reach2: f32 = 8,
-        per_width2: f32 = 12,
+        reach2: f32 = 8,
+        reach2_rest: f32 = 12,
     }
 }
 

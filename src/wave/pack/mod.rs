@@ -174,13 +174,7 @@ fn falloff(falloff: Falloff) -> layout::Falloff {
         radius,
         reach,
     } = falloff;
-    let per_square = |length: f64| {
-        if length > 0.0 {
-            1.0 / (length * length)
-        } else {
-            0.0
-        }
-    };
+    let reach2 = reach.map_or(0.0, |reach| reach * reach);
     layout::Falloff {
         // As cl/wave/source/profile.h numbers them.
         profile: match profile {
@@ -191,8 +185,8 @@ fn falloff(falloff: Falloff) -> layout::Falloff {
             Profile::Smeared => 4,
         },
         radius2: (radius * radius) as f32,
-        per_reach2: reach.map_or(0.0, per_square) as f32,
-        per_width2: (0.5 * per_square(radius)) as f32,
+        reach2: reach2 as f32,
+        reach2_rest: rest(reach2),
     }
 }
 

@@ -142,6 +142,9 @@ CALL_IF_SCALAR floatv curve_closed_form(const curve_peaks *const peaks, const Qu
         const float3v span = {path->along.slope, path->across.slope, path->normal.slope};
         refine(&to_end, offset_from_core(peaks, nearest, x), span);
     }
+#ifdef SHAPES
+    to_end.bare = to_end.least, to_end.bare_rest = splat(0.0f);
+#endif
     to_end.least += path->profile.softening2;
     const floatv integral = integral_over(evenly_lit(from, to), &to_end, &path->profile, quadrature);
     return SERIES_LENGTH(path) ? integral * curve_intensity(path, x) : integral;
