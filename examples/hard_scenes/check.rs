@@ -1,11 +1,15 @@
 //! Holds images of a hard scene to the promise, and knows the limits that are documented.
 
-use energywave::internals::{Integrand, Source, ViewPlane, exact, sources};
+use energywave::internals::{Integrand, Source, ViewPlane, exact, integrate, sources};
 use energywave::scene::{BeamEnd, Measure, Method, Ray, Sampling};
 use energywave::{RadianceImage, Renderer, Result, Scene, reference};
 use glam::DVec3;
 
 use super::scenes::HardScene;
+use ties::tied_sources;
+
+#[path = "ties.rs"] // this file belongs to a test too
+mod ties;
 
 /// What no float32 device can undercut: for 99.9 % of the pixels, and for the worst.
 const MOST_PIXELS: f64 = 2e-5;
@@ -25,6 +29,9 @@ const OF_END: f64 = 1e-7;
 
 /// How black a dark stretch of a curve is, as a share of what the brightest weight everywhere would give.
 const OF_WEIGHTS: f64 = 3e-7;
+
+/// How well the range of lights is known that ties allow, as a share of them.
+const OF_TIES: f64 = 1e-6;
 
 /// How an image compares with the float64 reference.
 #[derive(Debug, Clone)]
@@ -161,7 +168,10 @@ impl<'a> Checked<'a> {
         let even = with_even_weights(&self.hard.scene);
         let even = even.as_ref().map(Tracer::new);
         for index in wrong {
-            let (low, high) = tracer.range(index, share * self.hard.scale);
+            let (mut low, mut high) = tracer.range(index, share * self.hard.scale);
+            if let Some((darkest, brightest)) = tracer.range_of_ties(index) {
+                (low, high) = (low.min(darkest), high.max(brightest));
+            }
             let dark = even
                 .as_ref()
                 .map_or(0.0, |even| OF_WEIGHTS * even.light(index));
@@ -220,6 +230,8 @@ struct Tracer<'a> {
     scene: &'a Scene,
     plane: ViewPlane,
     sources: Vec<Source>,
+    /// The same as dark and as bright as rounding may see them; `None` if that makes no difference.
+    ties: Option<[Vec<Source>; 2]>,
     integrand: Integrand,
 }
 
@@ -229,6 +241,9 @@ impl<'a> Tracer<'a> {
             scene,
             plane: ViewPlane::new(&scene.camera, scene.image),
             sources: sources(scene),
+            ties: tied_sources(scene, false)
+                .zip(tied_sources(scene, true))
+                .map(<[_; 2]>::from),
             integrand: Integrand {
                 decay: scene.decay,
                 softening: scene.integration.softening,
@@ -278,12 +293,33 @@ impl<'a> Tracer<'a> {
         (low, high)
     }
 
+    /// Returns the least and the greatest light of a pixel, of its first channel, whichever of a curve's points
+    /// rounding takes for the nearest.
+    fn range_of_ties(&self, index: usize) -> Option<(f64, f64)> {
+        let [darkest, brightest] = self.ties.as_ref()?;
+        let (ray, end) = self.ray(index);
+        let light = |sources: &[Source]| {
+            let light = |source: &Source| {
+                let mut breaks = Vec::new();
+                source.field.breaks(&ray, &mut breaks);
+                let integrand = |s| self.integrand.at(source, &ray, s);
+                source.emission.x * integrate(integrand, &mut breaks, end, OF_TIES).value
+            };
+            sources.iter().map(light).sum::<f64>() * self.measure(&ray)
+        };
+        Some((light(darkest), light(brightest)))
+    }
+
     fn radiance(&self, ray: &Ray, end: f64) -> DVec3 {
-        let measure = match self.scene.integration.measure {
+        let light = |source: &Source| source.emission * exact(source, ray, &self.integrand, end);
+        self.sources.iter().map(light).sum::<DVec3>() * self.measure(ray)
+    }
+
+    /// Returns what the integral over the parameter is multiplied by.
+    fn measure(&self, ray: &Ray) -> f64 {
+        match self.scene.integration.measure {
             Measure::Length => ray.span.length(),
             _ => 1.0,
-        };
-        let light = |source: &Source| source.emission * exact(source, ray, &self.integrand, end);
-        self.sources.iter().map(light).sum::<DVec3>() * measure
+        }
     }
 }

@@ -1,13 +1,14 @@
 // The integral of the field of a KIND times the decay, to a relative error: Gauss-Legendre quadrature on mapped panels
 // (panel.h). Two null rules on the same nodes, the highest Legendre coefficients that they see, tell how well a panel
-// is resolved; one that is not is cut in two, in all lanes. A kind without closed form includes this file at the end of
-// its own header, where it has defined KIND: that makes its KIND_integral, torus_integral for instance.
+// is resolved; one that is not is cut in two, in all lanes. A kind without closed form includes this
+// file at the end of its own header, where it has defined KIND: that makes its KIND_integral, torus_integral for
+// instance.
 //
 // The host gives the positive nodes of the rule, the outermost first, their weights and those of the null rules as
 // GAUSS_..., and as `threshold` how large the coefficients may be, of the integral.
 
-// Panels that may be open at once, cuts of a ray's panels in all, by which factor errors may grow with every cut of
-// their second half, how much worse than its nodes tell a panel with kinks may be, and the share of the first estimate
+// Cuts of a ray's panels in all, panels that may be open at once, by which factor errors may grow with every cut of the
+// second half, how much worse than its nodes tell a panel with kinks may be, and the share of the first estimate
 // that errors may be measured by.
 #ifndef MOST_CUTS
 #define MOST_CUTS 64
@@ -217,12 +218,16 @@ INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadratu
 #else
     const bool has_end = false;
 #endif
+    // Of every lane: what one cannot resolve is not to spoil its neighbours.
+    floatv patience = splat(threshold);
+    intv own_cuts = (intv)(0);
 #if KIND_HAS(more_cuts)
     const uint most_cuts = MOST_CUTS + KIND_more_cuts(&peaks);
 #else
     const uint most_cuts = MOST_CUTS;
 #endif
-    uint cuts = 0, nodes = 0;
+    uint nodes = 0;
+    bool has_cut = false;
     floatv estimate = integral;
 #if KIND_HAS(two_panels)
     if (!has_end) {
@@ -255,7 +260,7 @@ INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadratu
         floatv value = splat(0.0f);
         intv is_done = is_empty;
 #if KIND_HAS(closed_ends)
-        if (cuts > 0)
+        if (has_cut)
             is_done |= KIND_closed(&peaks, quadrature, from, to, &value);
 #endif
         if (any_lane(!is_done)) {
@@ -267,19 +272,25 @@ INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadratu
                 estimate += select(value, splat(0.0f), is_empty);
                 continue;
             }
-            const floatv allowed = threshold * max(fabs(integral + value), FIRST_ESTIMATE * fabs(estimate));
-            const intv is_rough = (panel.unresolved2 > allowed * allowed) | (panel.unseen > allowed);
-            if (cuts < most_cuts && open + 2 <= MOST_PANELS && any_lane(is_rough & !is_done)) {
+            const floatv allowed = patience * max(fabs(integral + value), FIRST_ESTIMATE * fabs(estimate));
+            const intv is_rough = ((panel.unresolved2 > allowed * allowed) | (panel.unseen > allowed)) & !is_done &
+                                  (own_cuts < (intv)((int)most_cuts));
+            if (open + 2 <= MOST_PANELS && any_lane(is_rough)) {
+                // What is as short as float32 can tell stays whole.
+                const intv is_cut = (panel.middle > from) & (panel.middle < to) & !is_done;
 #if KIND_HAS(jumps)
                 const floatv cut = KIND_split(&peaks, from, to, panel.middle);
 #else
                 const floatv cut = panel.middle;
 #endif
-                all_from[open] = cut, all_to[open] = select(to, cut, is_empty);
-                all_from[open + 1] = from, all_to[open + 1] = select(cut, from, is_empty);
+                // Lanes that are done with the panel, or have it whole, find both halves empty.
+                integral += select(value, splat(0.0f), is_empty | is_cut);
+                all_from[open] = select(from, cut, is_cut), all_to[open] = select(from, to, is_cut);
+                all_from[open + 1] = from, all_to[open + 1] = select(from, cut, is_cut);
                 open += 2;
-                if (++cuts > most_cuts / 2)
-                    threshold *= PATIENCE;
+                has_cut = true;
+                own_cuts += select((intv)(0), (intv)(1), is_rough);
+                patience = select(patience, PATIENCE * patience, is_rough & (own_cuts > (intv)((int)most_cuts / 2)));
                 continue;
             }
         }

@@ -55,9 +55,8 @@ floatv segment_field(const segment_path *const path, const floatv s) {
 }
 
 INLINE Quadratic segment_select(const Quadratic a, const Quadratic b, const intv is_b) {
-    Quadratic q = {select(a.slope, b.slope, is_b), select(a.offset, b.offset, is_b),
-                         select(a.least, b.least, is_b), select(a.nearest, b.nearest, is_b),
-                         select(a.ahead, b.ahead, is_b)};
+    Quadratic q = {select(a.slope, b.slope, is_b), select(a.offset, b.offset, is_b), select(a.least, b.least, is_b),
+                   select(a.nearest, b.nearest, is_b), select(a.ahead, b.ahead, is_b)};
 #ifdef SHAPES
     q.bare = select(a.bare, b.bare, is_b), q.bare_rest = select(a.bare_rest, b.bare_rest, is_b);
 #endif

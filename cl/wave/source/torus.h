@@ -213,11 +213,13 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     const floatv distance2 = fma(offset.from_ring, offset.from_ring, near.height * near.height);
     const intv is_next =
         (distance2 < 1e-4f * radius2) & (offset.slope2 > 0.2f * peaks->ray->length * peaks->ray->length);
-    // A ray along the ring is within the floor, or the softening, for as long as its distance grows with the square.
+    // A ray along the ring is within the floor, or the softening, for as long as its distance grows with the square,
+    // and has kinks where it leaves it.
     const floatv blur2 = path->profile.softening2 + path->profile.floor2, blur = 0.5f * twice_sqrt(blur2);
     const floatv bend = 2.0f * near.across_slope * near.across_slope * inverse(splat(path->major_radius));
     const floatv blurred = 0.5f * twice_inverse_sqrt_(fma(bend, blur, offset.slope2)) * blur;
     peak->im = select(peak->im, max(peak->im, blurred), is_close);
+    peak->is_flat |= is_close & (distance2 < 4.0f * blur2);
     if (!any_lane(is_next)) {
         peak->re -= *base;
         return near;

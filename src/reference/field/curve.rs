@@ -39,16 +39,22 @@ impl CurveField {
         let tie = 1e-12 * (self.c1.length() + self.c2.length()).powi(2);
         let mut least = self.c0.distance_squared(point);
         let mut nearest = (0.0, least);
-        let mut offer = |t: f64| {
-            let distance2 = self.at(t).distance_squared(point);
+        self.for_each_stationary(point, &mut |t, distance2| {
             least = least.min(distance2);
             if distance2 < nearest.1 - tie {
                 nearest = (t, distance2);
             }
-        };
-        stationary(self.c2, self.c1, self.c0 - point, &mut offer);
-        offer(1.0);
+        });
         (nearest.0, least)
+    }
+
+    /// Calls `offer` with both ends and every parameter between at which the distance from a point is stationary, and
+    /// its square there.
+    pub fn for_each_stationary(&self, point: DVec3, offer: &mut impl FnMut(f64, f64)) {
+        let mut at = |t: f64| offer(t, self.at(t).distance_squared(point));
+        at(0.0);
+        stationary(self.c2, self.c1, self.c0 - point, &mut at);
+        at(1.0);
     }
 
     /// Finds where along the ray the nearest point jumps, also closely beside each break, where no node of a quadrature

@@ -180,6 +180,10 @@ INLINE floatv nearest_core(const curve_path *const path, const floatv x, float3v
     return nearest;
 }
 
+// What stands for the floor serves a whole peak only: one that ends a panel, or is this many floors from there or less,
+// is taken as it is, with its kinks.
+#define FLOORS_TO_END 100.0f
+
 INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
                                  floatv *const base) {
     const curve_path *const path = &peaks->path;
@@ -223,8 +227,14 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
 
     // Where the ray runs along the curve, the floor cuts off more than a point of it.
     const intv is_floored = lowest < path->profile.floor2;
-    const intv is_thin = is_floored & (path->profile.floor2 < 1e-6f * size2) & (curvature > 0.02f * peaks->span2);
+    intv is_thin = is_floored & (path->profile.floor2 < 1e-6f * size2) & (curvature > 0.02f * peaks->span2);
     peak->is_flat = is_floored & !is_thin;
+    if (any_lane(is_thin)) {
+        const floatv peak_at = *base + peak->re, to_end = min(fabs(peak_at - from), fabs(peak_at - to));
+        const intv is_cut = is_thin & (to_end < FLOORS_TO_END * CORE_FLOOR);
+        is_thin &= !is_cut;
+        peak->is_flat |= is_cut & (peak->re * peak->re * curvature < 1.1f * path->profile.floor2);
+    }
     curve_near near = {*path, x, needs_polish(path, lowest), {true, true}, {x, splat(0.0f)}};
     near.path.profile.softening2 +=
         select(splat(0.0f), floored(lowest, path->profile.floor2, IS_SQUARE(&path->profile)) - lowest, is_thin);
