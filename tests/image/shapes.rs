@@ -44,9 +44,8 @@ const SHAPES: [Shape; 9] = [
 /// What the definition's sums miss; the reference is better.
 const SUM_ERROR: f64 = 1e-7;
 
-/// Where light ends it goes to 0 with the fifth power of the root of what float32 leaves of the distance: pixels below
-/// this share of the brightest are measured by that.
-const LEAST_LIGHT: f64 = 1e-3;
+/// Pixels below this share of the brightest are measured by that: a Gaussian's and a reach's last light.
+const LEAST_LIGHT: f64 = 1e-9;
 
 /// Gives every source of a scene a shape.
 fn shaped(mut scene: Scene, shape: Shape) -> Scene {

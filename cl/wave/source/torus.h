@@ -146,6 +146,9 @@ typedef struct {
     float major_radius;
     floatv softening2, floor2;
     Profile profile;
+#ifdef SHAPES
+    floatv rho, from_ring, left2; // at the base; left2 is what the squared distance there lacks to where light ends
+#endif
 } torus_near;
 
 INLINE torus_near torus_near_at(const torus_peaks *const peaks, const floatv base) {
@@ -177,6 +180,30 @@ INLINE void torus_near_refine(const torus_peaks *const peaks, const floatv base,
     near->excess = 4.0f * from_finev(fine_subtract(beside, fine_multiply(radius, radius)));
 }
 
+#ifdef SHAPES
+// Finds what the squared distance at the base lacks to where light ends: there its last digits count.
+INLINE void torus_near_left(const torus_peaks *const peaks, const floatv base, torus_near *const near) {
+    __global const Torus *const torus = peaks->torus;
+    const Profile *const profile = &near->profile;
+    if (!HAS_END(profile))
+        return;
+    const fine3v from_center = fine_between(peaks->ray, base, torus->center, torus->center_rest);
+    const finev height = fine_dot3(from_center, fine3(torus->axis, torus->axis_rest));
+    const finev height2 = fine_multiply(height, height);
+    const finev rho2 = fine_subtract(fine_dot3(from_center, from_center), height2);
+    const floatv rho = 0.5f * twice_sqrt(max(from_finev(rho2), 1e-30f));
+    const finev fine_rho = to_finev(rho);
+    const floatv rest = 0.5f * inverse(rho) * from_finev(fine_subtract(rho2, fine_multiply(fine_rho, fine_rho)));
+    const finev radius = uniform_fine(torus->major_radius, torus->major_radius_rest);
+    const finev from_ring = fine_subtract(fine_add(fine_rho, to_finev(rest)), radius);
+    const finev distance2 = fine_fma(from_ring, from_ring, height2);
+    const finev end2 = uniform_fine(profile->end2, profile->end2_rest);
+    near->rho = 2.0f * rho;
+    near->from_ring = 2.0f * from_finev(from_ring);
+    near->left2 = from_finev(fine_fma(distance2, to_finev(splat(-4.0f)), end2));
+}
+#endif
+
 // Distance from the ring within the plane through its axis, with its slope along the ray.
 typedef struct {
     floatv from_ring, from_ring_slope, slope2;
@@ -192,8 +219,8 @@ INLINE torus_offset torus_offset_of(const torus_near *const near) {
     return offset;
 }
 
-INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
-                                 floatv *const base) {
+INLINE torus_near torus_approach_core(const torus_peaks *const peaks, const floatv from, const floatv to,
+                                      Peak *const peak, floatv *const base) {
     const torus_path *const path = &peaks->path;
     const float radius2 = path->major_radius * path->major_radius;
     *peak = nearer_peak(peaks->first, peaks->second, from, to);
@@ -244,6 +271,15 @@ INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv fr
     return near;
 }
 
+INLINE torus_near torus_approach(const torus_peaks *const peaks, const floatv from, const floatv to, Peak *const peak,
+                                 floatv *const base) {
+    torus_near near = torus_approach_core(peaks, from, to, peak, base);
+#ifdef SHAPES
+    torus_near_left(peaks, *base, &near);
+#endif
+    return near;
+}
+
 // Returns the field at s = base + x: 1 / sqrt((rho - R)^2 + z^2) with rho - R = (rho^2 - R^2) / (rho + R).
 INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv across = fma(near->across_slope, x, near->across);
@@ -255,8 +291,19 @@ INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     const floatv sum2 = sum * sum;
     const floatv scaled2 = max(fma(excess, excess, aside2 * sum2), near->floor2 * sum2);
     const floatv per_distance = sum * coarse_twice_inverse_sqrt(clamp(scaled2, 1e-36f, 1e38f));
-    const floatv distance2 = IS_SHAPED(&near->profile) ? scaled2 * inverse(sum2) : splat(0.0f);
-    return field_of(&near->profile, distance2, per_distance);
+#ifdef SHAPES
+    if (IS_SHAPED(&near->profile)) {
+        floatv left2 = splat(0.0f);
+        if (HAS_END(&near->profile)) {
+            const floatv rho = sum - near->major_radius, climbed = near->height_slope * x;
+            const floatv farther = fma(curvature, x, near->excess_slope) * x * inverse(rho + near->rho);
+            left2 = near->left2 - fma(farther, fma(splat(2.0f), near->from_ring, farther),
+                                      climbed * fma(splat(2.0f), near->height, climbed));
+        }
+        return shaped(&near->profile, scaled2 * inverse(sum2), max(left2, 0.0f), per_distance);
+    }
+#endif
+    return field_of(&near->profile, splat(0.0f), per_distance);
 }
 
 Clearance torus_clearance(const Ray *const ray, const Sources *const sources, const uint index,

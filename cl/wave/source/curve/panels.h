@@ -143,7 +143,10 @@ CALL_IF_SCALAR floatv curve_closed_form(const curve_peaks *const peaks, const Qu
         refine(&to_end, offset_from_core(peaks, nearest, x), span);
     }
 #ifdef SHAPES
-    to_end.bare = to_end.least, to_end.bare_rest = splat(0.0f);
+    if (HAS_END(&path->profile)) {
+        const floatv left2 = fma(to_end.ahead, to_end.ahead, curve_left2(peaks, nearest, x));
+        to_end.bare = splat(path->profile.end2), to_end.bare_rest = path->profile.end2_rest - left2;
+    }
 #endif
     to_end.least += path->profile.softening2;
     const floatv integral = integral_over(evenly_lit(from, to), &to_end, &path->profile, quadrature);

@@ -124,8 +124,8 @@ INLINE floatv curve_edge_distance2(const curve_peaks *const peaks, const floatv 
 }
 #endif
 
-// Returns L(s) - C(1/2 + x) in the curve's frame, doubled.
-CALL_IF_SCALAR float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
+// Returns L(s) - C(1/2 + x).
+INLINE fine3v fine_offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
     __global const Curve *const curve = peaks->curve;
     const finev back = to_finev(-x);
     const fine3v from_middle = fine_between(peaks->ray, s, curve->middle, curve->middle_rest);
@@ -133,11 +133,27 @@ CALL_IF_SCALAR float3v offset_from_core(const curve_peaks *const peaks, const fl
     const fine3v second = fine3(curve->second, curve->second_rest);
     // C(1/2) - C(1/2 + x) = -x (C'(1/2) + x C2)
     const fine3v chord = fine_fma3(second, fine_negate(back), velocity);
-    const float3v offset = from_fine3(fine_fma3(chord, back, from_middle));
+    return fine_fma3(chord, back, from_middle);
+}
+
+// Returns the same in the curve's frame, doubled.
+CALL_IF_SCALAR float3v offset_from_core(const curve_peaks *const peaks, const floatv s, const floatv x) {
+    __global const Curve *const curve = peaks->curve;
+    const float3v offset = from_fine3(fine_offset_from_core(peaks, s, x));
     const float3v in_frame = {2.0f * dot3(offset, uniform3(curve->along)), 2.0f * dot3(offset, uniform3(curve->across)),
                               2.0f * dot3(offset, uniform3(curve->normal))};
     return in_frame;
 }
+
+#ifdef SHAPES
+// Returns what the squared distance of L(s) to C(1/2 + x) lacks to where light ends: there its last digits count.
+CALL_IF_SCALAR floatv curve_left2(const curve_peaks *const peaks, const floatv s, const floatv x) {
+    const Profile *const profile = &peaks->path.profile;
+    const fine3v offset = fine_offset_from_core(peaks, s, x);
+    const finev end2 = uniform_fine(profile->end2, profile->end2_rest);
+    return from_finev(fine_fma(fine_dot3(offset, offset), to_finev(splat(-4.0f)), end2));
+}
+#endif
 
 // What a node sees: x of the nearest point, and the field without intensity.
 typedef struct {
@@ -151,6 +167,9 @@ typedef struct {
     bool is_polished; // whether roots of the cubic are improved
     RootCounts counts;
     curve_node_sight sight; // of the last point that was asked for
+#ifdef SHAPES
+    floatv left2; // what the squared distance of the point itself lacks to where light ends
+#endif
 } curve_near;
 
 // Returns whether the roots of the cubic have too few digits for such a squared distance. They lose the more, the
@@ -239,6 +258,9 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
     near.path.profile.softening2 +=
         select(splat(0.0f), floored(lowest, path->profile.floor2, IS_SQUARE(&path->profile)) - lowest, is_thin);
     near.path.profile.floor2 = select(path->profile.floor2, 0.5f * path->profile.floor2, is_thin);
+#ifdef SHAPES
+    near.left2 = HAS_END(&path->profile) ? curve_left2(peaks, *base, x) : splat(0.0f);
+#endif
     near.path.along.at = offset.x;
     near.path.across.at = offset.y;
     near.path.normal.at = offset.z;
@@ -279,6 +301,21 @@ INLINE floatv polished(const curve_path *const path, const curve_point *const po
     return select(x, x + step, is_inner);
 }
 
+#ifdef SHAPES
+// Returns what the squared distance at s = base + x lacks to where light ends, given the nearest point there.
+INLINE floatv curve_near_left2(const curve_near *const near, const floatv x, const floatv nearest) {
+    const curve_path *const path = &near->path;
+    const floatv ahead = nearest - near->core;
+    const floatv chord_across = fma(splat(path->bend), nearest + near->core, splat(path->velocity_across));
+    const floatv along = fma(-path->velocity_along, ahead, path->along.slope * x);
+    const floatv across = fma(-chord_across, ahead, path->across.slope * x), normal = path->normal.slope * x;
+    const floatv farther2 =
+        fma(along, fma(splat(2.0f), path->along.at, along),
+            fma(across, fma(splat(2.0f), path->across.at, across), normal * fma(splat(2.0f), path->normal.at, normal)));
+    return max(near->left2 - farther2, 0.0f);
+}
+#endif
+
 // Returns the field at s = base + x.
 INLINE floatv curve_near_field(curve_near *const near, const floatv x) {
     curve_point point = curve_point_at(&near->path, x);
@@ -290,6 +327,12 @@ INLINE floatv curve_near_field(curve_near *const near, const floatv x) {
     const floatv softened2 = distance2 + near->path.profile.softening2;
     const floatv per_distance = coarse_twice_inverse_sqrt(max(softened2, near->path.profile.floor2));
     near->sight.x = nearest;
+#ifdef SHAPES
+    near->sight.plain = IS_SHAPED(&near->path.profile)
+                            ? shaped(&near->path.profile, softened2, curve_near_left2(near, x, nearest), per_distance)
+                            : field_of(&near->path.profile, softened2, per_distance);
+#else
     near->sight.plain = field_of(&near->path.profile, softened2, per_distance);
+#endif
     return SERIES_LENGTH(&near->path) ? near->sight.plain * curve_intensity(&near->path, nearest) : near->sight.plain;
 }
