@@ -5,7 +5,7 @@
 use crate::common;
 use crate::common::host::Host;
 use energywave::image::DepthAlong;
-use energywave::scene::Method;
+use energywave::scene::{Method, Profile};
 use energywave::verify::built_in_rays;
 use energywave::{Renderer, RendererOptions, Scene};
 use opencl3::memory::{CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA};
@@ -107,6 +107,15 @@ fn groups_that_share_a_tile_stay_together_in_every_branch() {
         assert_eq!(integrals == 0, matches!(wall, Wall::Near), "{wall:?}");
         assert_eq!(integrals % NODES, 0, "a group was parted: {wall:?}");
     }
+    // Light that ends before the tile, on it, and beyond it.
+    for reach in [0.5, 9.0, 40.0] {
+        let mut scene = on_one_tile(0, true, Wall::Slanted);
+        scene.spheres[0].reach = Some(reach);
+        let integrals = taken(&scene);
+        println!("reach {reach}: {integrals}");
+        assert_eq!(integrals == 0, reach < 1.0, "reach {reach}");
+        assert_eq!(integrals % NODES, 0, "a group was parted: reach {reach}");
+    }
 }
 
 #[test]
@@ -132,8 +141,12 @@ fn every_kernel_runs_on_every_lane_width() {
         let mut renderer = Renderer::with_options(&common::device(), &options).unwrap();
         for method in [Method::simpson(4), Method::default()] {
             scene.integration.method = method;
-            // Squares behind a wall with an edge.
+            // Squares and other shapes behind a wall with an edge.
             let mut hidden = common::squared(&scene);
+            hidden.tori[0].reach = Some(0.8);
+            hidden.curves[0].reach = Some(0.8);
+            hidden.spheres[0].radius = 0.1;
+            hidden.beams[0].profile = Profile::InverseCube;
             hidden.depth = Some(common::depths(&scene, DepthAlong::Axis, |column, row| {
                 if column + row < 6 {
                     3.0 + 0.1 * f64::from(row)

@@ -304,8 +304,8 @@ fn a_file_names_its_keys_and_a_wrong_one_its_place() {
         ),
         ("to = [1.0, 0.0]\n", "expected three numbers, found 2"),
         (
-            "to = [1.0, 0.0, 0.0]\nradius = 1.0\n",
-            "unknown field `radius`",
+            "to = [1.0, 0.0, 0.0]\nmajor_radius = 1.0\n",
+            "unknown field `major_radius`",
         ),
     ] {
         let message = read(rest).unwrap_err().to_string();

@@ -44,8 +44,8 @@ const SHAPES: [Shape; 9] = [
 /// What the definition's sums miss; the reference is better.
 const SUM_ERROR: f64 = 1e-7;
 
-/// Pixels below this share of the brightest are measured by that: a Gaussian's and a reach's last light.
-const LEAST_LIGHT: f64 = 1e-9;
+/// Pixels below this share of the brightest are measured by it: the last light of a Gaussian and of a reach.
+const LEAST_LIGHT: f64 = 1e-6;
 
 /// Gives every source of a scene a shape.
 fn shaped(mut scene: Scene, shape: Shape) -> Scene {

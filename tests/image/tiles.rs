@@ -177,6 +177,11 @@ fn integrals(renderer: &mut Renderer, scene: &Scene, width: u32, height: u32) ->
     renderer.last_cost().integrals
 }
 
+/// Whether the light of some sources ends.
+fn ends(scene: &Scene) -> bool {
+    scene.tori.iter().any(|ring| ring.reach.is_some())
+}
+
 #[test]
 fn integrals_grow_with_the_outline_and_not_with_the_pixels() {
     let mut renderer = renderer(common::device().lanes, "");
@@ -193,7 +198,9 @@ fn integrals_grow_with_the_outline_and_not_with_the_pixels() {
         let growth = large as f64 / small as f64;
         assert!(growth < 2.6, "{name}: {small} to {large}");
         let all = 3 * 1920 * 1080 * scene.source_count() as u64;
-        assert!(10 * large < all, "{name}: {large} of {all}");
+        // Where light ends tiles are rough too.
+        let share = if ends(&scene) { 5 } else { 10 };
+        assert!(share * large < all, "{name}: {large} of {all}");
         let pixels = sampled(&scene, Sampling::Pixels);
         assert_eq!(
             integrals(&mut renderer, &pixels, 96, 54),

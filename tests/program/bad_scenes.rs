@@ -107,7 +107,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[[sphere]]\nprofile = \"square\"\n",
         "5:11: sphere[0].profile",
-        "expected `inverse` or `inverse-square`",
+        "expected one of `inverse`, `inverse-square`, `inverse-cube`, `gaussian`, `smeared`",
     ),
     (
         "[depth]\nfile = \"nowhere.exr\"\n",
