@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::sphere::Point;
 use super::{Field, Parts, Sample, Source, crossing, nearest_to_line};
-use crate::scene::{Beam, Ray, SourceKind};
+use crate::scene::{Beam, Ray, HasLight};
 
 /// The line of a beam: dark behind the tip, or fading there over the length of a taper; the direction is a unit vector.
 #[derive(Debug, Clone)]

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source};
-use crate::scene::{Curve, Ray, SourceKind};
+use crate::scene::{Curve, Ray, HasLight};
 
 /// `C(t) = C2 t^2 + C1 t + C0`, t in `[0,1]`, with its intensity series.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, even, nearest_to_line};
-use crate::scene::{Cylinder, Ray, SourceKind};
+use crate::scene::{Cylinder, Ray, HasLight};
 
 /// A line through a point; the direction is a unit vector.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, crossing, even, nearest_to_line};
-use crate::scene::{Ray, Segment, SourceKind};
+use crate::scene::{Ray, Segment, HasLight};
 
 /// The points from one end to the other; the span is their difference.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, even};
-use crate::scene::{Ray, Sphere, SourceKind};
+use crate::scene::{Ray, Sphere, HasLight};
 
 /// A point.
 #[derive(Debug, Clone)]

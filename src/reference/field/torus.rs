@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Field, Parts, Sample, Source, even};
-use crate::scene::{Ray, Torus, SourceKind};
+use crate::scene::{Ray, Torus, HasLight};
 
 /// The circle of a ring; the axis is a unit vector.
 #[derive(Debug, Clone)]

@@ -10,9 +10,12 @@ use super::values::{Checked, Fault, finite, vector};
 
 mod core;
 mod falloff;
+mod shared;
 
 pub(super) use core::Core;
 pub use falloff::{Falloff, Profile};
+pub(crate) use shared::{HasLight, Shared};
+use shared::{source, source_struct};
 
 macro_rules! declare_kinds {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
@@ -38,12 +41,9 @@ impl Light {
 }
 
 /// What every kind of source says of itself.
-pub(crate) trait SourceKind {
+pub(crate) trait SourceKind: HasLight {
     /// Checks its values; `brightness` tells which light float32 can hold.
     fn check(&self, brightness: &Brightness) -> Checked;
-
-    /// Returns its light as a whole.
-    fn light(&self) -> Light;
 
     /// Calls `add` with the emission of each of its parts, where some may be of another sign.
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {

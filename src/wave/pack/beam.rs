@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 
 use super::{Anchor, Pack, SplinePiece, device_struct, falloff, line, rest, scene};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::HasLight;
 
 device_struct! {
     /// A half-line of light.

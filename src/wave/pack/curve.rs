@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{Anchor, Pack, SplinePiece, device_struct, fine, falloff, scene, vector};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::HasLight;
 
 /// Below this ratio of `|C2|` to `|C'(1/2)|` a curve counts as straight: the cubic's roots would lose digits to its
 /// far-off vertex, while the kernels' foot on the tangent needs two Newton steps.

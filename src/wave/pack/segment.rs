@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Anchor, Pack, SplinePiece, device_struct, falloff, line, scene};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::HasLight;
 
 device_struct! {
     /// A finite line of light.

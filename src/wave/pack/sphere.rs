@@ -3,7 +3,7 @@
 
 use super::{Anchor, Pack, SplinePiece, device_struct, falloff, scene};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::HasLight;
 
 device_struct! {
     /// A point of light.

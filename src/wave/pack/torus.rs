@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 
 use super::{Anchor, Pack, SplinePiece, device_struct, fine, falloff, rest, scene};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::HasLight;
 
 device_struct! {
     /// A ring of light.

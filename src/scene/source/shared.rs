@@ -1,0 +1,125 @@
+//! The keys that every kind of source has: how bright it is, of which colour, and how its light falls off.
+
+use glam::DVec3;
+
+use super::{Falloff, Light, Profile};
+
+/// Defines a source's struct: the fields that are its kind's own, then those that every kind has.
+macro_rules! source_struct {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis struct $Type:ident { $($fields:tt)* }
+    ) => {
+        $(#[$attribute])*
+        $visibility struct $Type {
+            $($fields)*
+            /// The papers' energy coefficient; of a beam that of its line.
+            #[serde(default = "crate::scene::source::one")]
+            pub coefficient: f64,
+            /// Linear RGB.
+            #[serde(
+                default = "crate::scene::source::white",
+                deserialize_with = "crate::scene::values::read_vector"
+            )]
+            pub color: glam::DVec3,
+            /// How the field falls off.
+            #[serde(default)]
+            pub profile: $crate::scene::Profile,
+            /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
+            #[serde(default)]
+            pub radius: f64,
+            /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub reach: Option<f64>,
+            /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without
+            /// decay. It needs a radius, and where the light of the profile has no end, a reach.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub peak: Option<f64>,
+        }
+
+        impl $crate::scene::source::HasLight for $Type {
+            fn shared(&self) -> $crate::scene::source::Shared {
+                $crate::scene::source::Shared {
+                    coefficient: self.coefficient,
+                    color: self.color,
+                    profile: self.profile,
+                    radius: self.radius,
+                    reach: self.reach,
+                    peak: self.peak,
+                }
+            }
+        }
+    };
+}
+pub(super) use source_struct;
+
+/// Makes a source of its kind's own fields; those that every kind has are at their defaults, or like another's.
+macro_rules! source {
+    ($Type:ident { $($fields:tt)* }) => {
+        $crate::scene::source::shared::source!($Type { $($fields)* } like $crate::scene::source::Shared::default())
+    };
+    ($Type:ident { $($fields:tt)* } like $other:expr) => {{
+        let other = $other;
+        $Type {
+            coefficient: other.coefficient,
+            color: other.color,
+            profile: other.profile,
+            radius: other.radius,
+            reach: other.reach,
+            peak: other.peak,
+            $($fields)*
+        }
+    }};
+}
+pub(super) use source;
+
+/// What the keys that every kind has say of a source.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shared {
+    pub coefficient: f64,
+    pub color: DVec3,
+    pub profile: Profile,
+    pub radius: f64,
+    pub reach: Option<f64>,
+    pub peak: Option<f64>,
+}
+
+impl Default for Shared {
+    fn default() -> Self {
+        Self {
+            coefficient: super::one(),
+            color: super::white(),
+            profile: Profile::default(),
+            radius: 0.0,
+            reach: None,
+            peak: None,
+        }
+    }
+}
+
+impl Shared {
+    /// Returns the light that they make.
+    fn light(&self) -> Light {
+        let falloff = Falloff {
+            profile: self.profile,
+            radius: self.radius,
+            reach: self.reach,
+        };
+        Light {
+            coefficient: falloff.coefficient(self.coefficient, self.peak),
+            color: self.color,
+            falloff,
+        }
+    }
+}
+
+/// Has the keys that every kind has.
+pub(crate) trait HasLight {
+    /// Returns what they say.
+    fn shared(&self) -> Shared;
+
+    /// Returns its light as a whole.
+    fn light(&self) -> Light {
+        self.shared().light()
+    }
+}
