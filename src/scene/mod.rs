@@ -79,14 +79,19 @@ macro_rules! define_scene {
                 0 $(+ self.$list.len())*
             }
 
+            /// Returns the number of their lights: a source has one, or one a layer.
+            pub(crate) fn light_count(&self) -> usize {
+                0 $(+ self.$list.iter().map(|source| source.shared().light_count()).sum::<usize>())*
+            }
+
             /// Calls `add` with the emission of all parts of all sources.
             fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
                 $(self.$list.iter().for_each(|source| source.for_each_emission(add));)*
             }
 
-            /// Returns whether any source falls off in such a way.
+            /// Returns whether any light falls off in such a way.
             pub(crate) fn any_falloff(&self, is_such: impl Fn(Falloff) -> bool) -> bool {
-                $(self.$list.iter().any(|source| is_such(source.light().falloff)))||*
+                $(self.$list.iter().any(|source| source.lights().any(|light| is_such(light.falloff))))||*
             }
         }
     };

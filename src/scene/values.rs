@@ -29,6 +29,11 @@ impl Fault {
         }
     }
 
+    /// Returns its key in the table.
+    pub(super) fn key(&self) -> &str {
+        &self.key
+    }
+
     /// Moves the fault to another key.
     pub(crate) fn at(self, key: Cow<'static, str>) -> Self {
         Self { key, ..self }

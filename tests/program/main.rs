@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bad_looks; // has every fault of layers named with its place
 mod bad_scenes; // has every fault of a scene file named with its place
 mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
 #[cfg(unix)] // shells, signals and the loader's environment variables

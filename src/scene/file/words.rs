@@ -36,6 +36,18 @@ pub(super) fn plain(language: Language, key: String, message: &str) -> (String, 
         let words = several(language, &key);
         return (key, words);
     }
+    if key.ends_with(".layers") && message.ends_with("expected a sequence") {
+        let words = match language {
+            Language::Toml => {
+                "there may be several: write a list of them, also of one: layers = [{ }]"
+            }
+            #[cfg(feature = "json")]
+            Language::Json => {
+                "there may be several: write a list of them, also of one: \"layers\": [{ }]"
+            }
+        };
+        return (key, words.to_owned());
+    }
     let (found, expected) = match message.rsplit_once(", expected ") {
         Some((found, expected)) => (found, expected),
         None => return (key, one_line(&shortened(message))),

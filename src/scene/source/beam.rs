@@ -47,10 +47,10 @@ impl Beam {
         })
     }
 
-    /// Returns the coefficient of the sphere behind the tip; 0 where there is a taper instead.
-    pub(crate) fn cap(&self) -> f64 {
+    /// Returns the coefficient of the sphere behind the tip, for one of its lights; 0 where there is a taper instead.
+    pub(crate) fn cap(&self, light: &Light) -> f64 {
         match self.end {
-            BeamEnd::Cap(coefficient) => coefficient.unwrap_or(self.light().coefficient),
+            BeamEnd::Cap(coefficient) => coefficient.unwrap_or(light.coefficient),
             BeamEnd::Taper(_) => 0.0,
         }
     }
@@ -74,19 +74,17 @@ impl SourceKind for Beam {
             BeamEnd::Cap(None) => {}
         }
         finite("sphere_coefficient", self.sphere_coefficient)?;
-        brightness.check_light(self.light(), self.peak, 1.0)?;
-        let line = self.light().coefficient.abs().max(self.cap().abs());
-        let strongest = line + self.sphere_coefficient.abs();
-        let strongest = Light {
-            coefficient: strongest,
-            ..self.light()
-        };
-        brightness.check_light(strongest, self.peak, 1.0)
+        self.shared().check(brightness, &|light| {
+            let line = light.coefficient.abs().max(self.cap(light).abs());
+            line + self.sphere_coefficient.abs()
+        })
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
-        for coefficient in [self.light().coefficient, self.cap(), self.sphere_coefficient] {
-            add(coefficient * self.color);
+        for light in self.lights() {
+            for coefficient in [light.coefficient, self.cap(&light), self.sphere_coefficient] {
+                add(coefficient * light.color);
+            }
         }
     }
 

@@ -40,7 +40,8 @@ impl SourceKind for Curve {
         }
         let series = self.intensity.iter().flatten();
         let strongest = series.fold(1.0_f64, |most, value| most.max(value.abs()));
-        brightness.check_light(self.light(), self.peak, strongest)?;
+        self.shared()
+            .check(brightness, &|light| strongest * light.coefficient.abs())?;
         let Some(series) = &self.intensity else {
             return Ok(());
         };
@@ -60,9 +61,10 @@ impl SourceKind for Curve {
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
-        let emission = self.light().emission();
-        for weight in self.intensity.as_deref().unwrap_or(&[1.0]) {
-            add(weight * emission);
+        for light in self.lights() {
+            for weight in self.intensity.as_deref().unwrap_or(&[1.0]) {
+                add(weight * light.emission());
+            }
         }
     }
 

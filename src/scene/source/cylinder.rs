@@ -35,7 +35,7 @@ impl SourceKind for Cylinder {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("point", self.point)?;
         direction("direction", self.direction)?;
-        brightness.check_light(self.light(), self.peak, 1.0)
+        self.shared().check(brightness, &|light| light.coefficient.abs())
     }
 
     fn core(&self) -> Core {

@@ -130,8 +130,8 @@ impl Falloff {
         Err(Fault::new("peak", advice))
     }
 
-    /// Checks its numbers.
-    pub(super) fn check(&self) -> Checked {
+    /// Checks its numbers, each for itself.
+    pub(super) fn check_sizes(&self) -> Checked {
         finite("radius", self.radius)?;
         if self.radius < 0.0 {
             let message = format!(
@@ -140,26 +140,29 @@ impl Falloff {
             );
             return Err(Fault::new("radius", message));
         }
-        match self.radius {
-            0.0 if self.profile.needs_radius() => {
-                let message = "this profile has a radius as its width: give one, such as 0.1";
-                return Err(Fault::new("radius", message));
+        if self.radius > 0.0 {
+            positive("radius", self.radius)?;
+        }
+        self.reach.map_or(Ok(()), |reach| positive("reach", reach))
+    }
+
+    /// Checks its numbers, and whether they go together.
+    pub(super) fn check(&self) -> Checked {
+        self.check_sizes()?;
+        if self.radius == 0.0 && self.profile.needs_radius() {
+            let message = "this profile has a radius as its width: give one, such as 0.1";
+            return Err(Fault::new("radius", message));
+        }
+        match self.reach {
+            Some(reach) if reach <= self.radius => {
+                let message = format!(
+                    "light that ends at {reach} leaves nothing of a core of the radius {}: make reach larger",
+                    self.radius
+                );
+                Err(Fault::new("reach", message))
             }
-            0.0 => {}
-            radius => positive("radius", radius)?,
+            _ => Ok(()),
         }
-        let Some(reach) = self.reach else {
-            return Ok(());
-        };
-        positive("reach", reach)?;
-        if reach <= self.radius {
-            let message = format!(
-                "light that ends at {reach} leaves nothing of a core of the radius {}: make reach larger",
-                self.radius
-            );
-            return Err(Fault::new("reach", message));
-        }
-        Ok(())
     }
 }
 

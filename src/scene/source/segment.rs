@@ -36,7 +36,7 @@ impl SourceKind for Segment {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("from", self.from)?;
         vector("to", self.to)?;
-        brightness.check_light(self.light(), self.peak, 1.0)
+        self.shared().check(brightness, &|light| light.coefficient.abs())
     }
 
     fn core(&self) -> Core {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Falloff, Light, Profile};
+use super::{Falloff, Layer, Light, Profile};
 
 /// Defines a source's struct: the fields that are its kind's own, then those that every kind has.
 macro_rules! source_struct {
@@ -35,10 +35,18 @@ macro_rules! source_struct {
             /// decay. It needs a radius, and where the light of the profile has no end, a reach.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             pub peak: Option<f64>,
+            /// Several lights of the core, whose sum is the source's light: what a layer does not name it takes from
+            /// the source. At most 16; none: the source has one light.
+            #[serde(
+                default,
+                skip_serializing_if = "Vec::is_empty",
+                deserialize_with = "crate::scene::source::read_layers"
+            )]
+            pub layers: Vec<$crate::scene::Layer>,
         }
 
         impl $crate::scene::source::HasLight for $Type {
-            fn shared(&self) -> $crate::scene::source::Shared {
+            fn shared(&self) -> $crate::scene::source::Shared<'_> {
                 $crate::scene::source::Shared {
                     coefficient: self.coefficient,
                     color: self.color,
@@ -46,6 +54,7 @@ macro_rules! source_struct {
                     radius: self.radius,
                     reach: self.reach,
                     peak: self.peak,
+                    layers: &self.layers,
                 }
             }
         }
@@ -67,6 +76,7 @@ macro_rules! source {
             radius: other.radius,
             reach: other.reach,
             peak: other.peak,
+            layers: other.layers.to_vec(),
             $($fields)*
         }
     }};
@@ -75,16 +85,17 @@ pub(super) use source;
 
 /// What the keys that every kind has say of a source.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Shared {
+pub(crate) struct Shared<'a> {
     pub coefficient: f64,
     pub color: DVec3,
     pub profile: Profile,
     pub radius: f64,
     pub reach: Option<f64>,
     pub peak: Option<f64>,
+    pub layers: &'a [Layer],
 }
 
-impl Default for Shared {
+impl Default for Shared<'_> {
     fn default() -> Self {
         Self {
             coefficient: super::one(),
@@ -93,33 +104,62 @@ impl Default for Shared {
             radius: 0.0,
             reach: None,
             peak: None,
+            layers: &[],
         }
     }
 }
 
-impl Shared {
-    /// Returns the light that they make.
-    fn light(&self) -> Light {
-        let falloff = Falloff {
+impl<'a> Shared<'a> {
+    pub(super) fn falloff(&self) -> Falloff {
+        Falloff {
             profile: self.profile,
             radius: self.radius,
             reach: self.reach,
-        };
+        }
+    }
+
+    /// Returns the light that they make without layers.
+    pub(super) fn light(&self) -> Light {
+        let falloff = self.falloff();
         Light {
             coefficient: falloff.coefficient(self.coefficient, self.peak),
             color: self.color,
             falloff,
         }
     }
+
+    /// Returns the colours that they name and some light has, each with the layer that names it.
+    pub(crate) fn colors(self) -> impl Iterator<Item = (Option<usize>, DVec3)> + 'a {
+        let layers = self.layers.iter().map(|layer| layer.color);
+        let is_own_seen = self.layers.is_empty() || layers.clone().any(|color| color.is_none());
+        let own = is_own_seen.then_some((None, self.color));
+        let named = layers
+            .enumerate()
+            .filter_map(|(index, color)| Some((Some(index), color?)));
+        own.into_iter().chain(named)
+    }
+
+    /// Returns how many lights they make.
+    pub(crate) fn light_count(&self) -> usize {
+        self.layers.len().max(1)
+    }
+
+    /// Returns all lights that they make: one, or that of each layer.
+    fn lights(self) -> impl Iterator<Item = Light> + 'a {
+        let own = self.layers.is_empty().then(|| self.light());
+        let layers = self.layers.iter();
+        own.into_iter()
+            .chain(layers.map(move |layer| layer.over(&self).light()))
+    }
 }
 
 /// Has the keys that every kind has.
 pub(crate) trait HasLight {
     /// Returns what they say.
-    fn shared(&self) -> Shared;
+    fn shared(&self) -> Shared<'_>;
 
-    /// Returns its light as a whole.
-    fn light(&self) -> Light {
-        self.shared().light()
+    /// Returns its lights, whose sum is what is seen of it.
+    fn lights(&self) -> impl Iterator<Item = Light> + '_ {
+        self.shared().lights()
     }
 }

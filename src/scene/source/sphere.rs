@@ -28,7 +28,7 @@ impl Default for Sphere {
 impl SourceKind for Sphere {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("center", self.center)?;
-        brightness.check_light(self.light(), self.peak, 1.0)
+        self.shared().check(brightness, &|light| light.coefficient.abs())
     }
 
     fn core(&self) -> Core {

@@ -40,7 +40,7 @@ impl SourceKind for Torus {
         vector("center", self.center)?;
         direction("axis", self.axis)?;
         positive("major_radius", self.major_radius)?;
-        brightness.check_light(self.light(), self.peak, 1.0)
+        self.shared().check(brightness, &|light| light.coefficient.abs())
     }
 
     fn core(&self) -> Core {

@@ -12,7 +12,7 @@ pub use view::{integrand, ray, view};
 
 use crate::opencl::device_struct;
 use crate::scene::kinds::{KIND_COUNT, for_each_kind};
-use crate::scene::{self, Falloff, Measure, Profile, Scene, SourcesStamp};
+use crate::scene::{self, Falloff, HasLight, Light, Measure, Profile, Scene, SourcesStamp};
 use layout::SplinePiece;
 
 /// Where the float32 coordinates begin, how far the rays go from there, and what every emission is multiplied with.
@@ -54,15 +54,15 @@ trait Pack {
     /// The kind's struct on the device.
     type Device;
 
-    /// Packs the source; a series over its core's parameter goes to `pieces`.
-    fn pack(&self, anchor: &Anchor, pieces: &mut Vec<SplinePiece>) -> Self::Device;
+    /// Packs the source with one of its lights; a series over its core's parameter goes to `pieces`.
+    fn pack(&self, light: &Light, anchor: &Anchor, pieces: &mut Vec<SplinePiece>) -> Self::Device;
 }
 
 macro_rules! define_sources {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         $(pub mod $kind;)*
 
-        /// A scene's sources as the kernels read them.
+        /// A scene's sources as the kernels read them: one entry a light.
         #[derive(Debug, Clone, Default, PartialEq)]
         pub struct Sources {
             $($(#[$doc])* pub $list: Vec<$kind::$Type>,)*
@@ -84,7 +84,10 @@ macro_rules! define_sources {
                 pieces.clear();
                 $(
                     self.$list.clear();
-                    self.$list.extend(scene.$list.iter().map(|it| it.pack(anchor, pieces)));
+                    for source in scene.$list.iter() {
+                        let lights = source.lights();
+                        self.$list.extend(lights.map(|light| source.pack(&light, anchor, pieces)));
+                    }
                 )*
             }
 
