@@ -9,6 +9,7 @@ mod camera;
 mod depth_report;
 #[cfg(feature = "files")]
 mod file;
+mod group;
 mod in_view;
 mod integration;
 pub(crate) mod kinds;
@@ -27,6 +28,7 @@ pub use camera::Camera;
 pub use depth_report::DepthReport;
 #[cfg(feature = "files")]
 pub use file::MethodKeys;
+pub use group::{Group, Repeat, Rotation};
 pub use integration::{CORE_FLOOR, Decay, Integration, Measure, Method, Sampling};
 pub use list::List;
 pub use ray::{Ray, ViewPlane};

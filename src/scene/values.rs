@@ -104,6 +104,13 @@ pub(crate) fn read_vector<'de, D: Deserializer<'de>>(reader: D) -> Result<DVec3,
     Ok(numbers.into())
 }
 
+/// Reads three numbers for a key that may be absent.
+pub(crate) fn read_some_vector<'de, D: Deserializer<'de>>(
+    reader: D,
+) -> Result<Option<DVec3>, D::Error> {
+    read_vector(reader).map(Some)
+}
+
 /// Makes a reader's message about a key of the table that it reads; [`unnamed`] takes it apart again.
 pub(crate) fn named(key: &str, message: &str) -> String {
     format!("key `{key}`: {message}")

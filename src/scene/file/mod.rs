@@ -1,6 +1,7 @@
 //! Reads a scene from TOML or JSON; every fault is reported with file, line, column and key.
 
 mod depth;
+mod groups;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
@@ -17,12 +18,14 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::integration::{check_divisions, check_tolerance};
-use super::kinds::{KIND_COUNT, for_each_kind};
+use super::kinds::for_each_kind;
 use super::values::Fault;
 use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
 use depth::DepthTable;
+use groups::{GroupTable, Groups};
+use scan::UNIT_COUNT;
 
 /// Changes a scene between its reading and its check.
 type Adjust<'a> = &'a mut dyn FnMut(&mut Scene, &MethodKeys) -> Result<()>;
@@ -48,6 +51,8 @@ macro_rules! define_scene_file {
             #[serde(default, skip_serializing_if = "Option::is_none")]
             depth: Option<DepthTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
+            #[serde(default, skip_serializing)]
+            group: Vec<GroupTable>,
         }
 
         /// A run of sources of a file.
@@ -55,6 +60,8 @@ macro_rules! define_scene_file {
         #[serde(deny_unknown_fields)]
         struct SourceTables {
             $(#[serde(default)] $kind: Vec<$Type>,)*
+            #[serde(default)]
+            group: Vec<GroupTable>,
         }
 
         impl SceneFile {
@@ -71,8 +78,8 @@ macro_rules! define_scene_file {
                 }
             }
 
-            /// Makes room for so many sources of each kind, in the order of the table.
-            fn reserve(&mut self, counts: [usize; KIND_COUNT]) {
+            /// Makes room for so many sources of each kind, in the order of the table, and groups.
+            fn reserve(&mut self, counts: [usize; UNIT_COUNT]) {
                 let mut counts = counts.into_iter();
                 $(
                     let count = counts.next().unwrap_or(0);
@@ -81,6 +88,8 @@ macro_rules! define_scene_file {
                         self.$kind.reserve_exact(more);
                     }
                 )*
+                let count = counts.next().unwrap_or(0);
+                self.group.reserve_exact(count.saturating_sub(self.group.len()));
             }
 
             /// Adds the sources of a run of tables.
@@ -90,6 +99,7 @@ macro_rules! define_scene_file {
                         self.$kind.extend(run.$kind);
                     }
                 )*
+                self.group.extend(run.group);
             }
 
             /// Makes a file's scene as it is written.
@@ -102,6 +112,7 @@ macro_rules! define_scene_file {
                     display: scene.display,
                     depth,
                     $($kind: scene.$list.clone(),)*
+                    group: Vec::new(),
                 }
             }
         }
@@ -227,18 +238,20 @@ impl IntegrationTable {
 
 impl SceneFile {
     /// Checks the scene, lets `adjust` change it, reads a depth image unless it has given one, and checks it again.
-    fn into_scene(mut self, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
+    fn into_scene(mut self, folder: &Path, adjust: Adjust<'_>) -> Result<Read> {
         let mut scene = self.scene();
         self.integration
             .check()
             .map_err(|fault| fault.of("integration"))?;
-        scene.check()?;
+        let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
+        groups.check(&scene)?;
         adjust(&mut scene, &self.integration.keys())?;
         if let (Some(depth), None) = (&self.depth, &scene.depth) {
             scene.depth = Some(depth.open(folder)?);
         }
-        scene.check()?;
-        Ok(scene)
+        groups.check(&scene)?;
+        let warnings = groups.warnings(&scene);
+        Ok((scene, warnings))
     }
 }
 

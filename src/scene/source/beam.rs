@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Light, Profile, SourceKind, source, source_struct};
+use super::{Brightness, Core, HasLight, Light, Placement, Profile, SourceKind, source, source_struct};
 use crate::scene::values::{Checked, direction, finite, named, positive, read_vector, vector};
 
 source_struct! {
@@ -85,6 +85,14 @@ impl SourceKind for Beam {
             for coefficient in [light.coefficient, self.cap(&light), self.sphere_coefficient] {
                 add(coefficient * light.color);
             }
+        }
+    }
+
+    fn move_core(&mut self, place: &Placement) {
+        self.tip = place.point(self.tip);
+        self.direction = place.direction(self.direction);
+        if let BeamEnd::Taper(length) = &mut self.end {
+            *length *= place.scale;
         }
     }
 

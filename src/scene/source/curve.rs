@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{Brightness, Core, HasLight, Profile, SourceKind, item, source, source_struct};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, item, source, source_struct};
 use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
 
 source_struct! {
@@ -66,6 +66,10 @@ impl SourceKind for Curve {
                 add(weight * light.emission());
             }
         }
+    }
+
+    fn move_core(&mut self, place: &Placement) {
+        self.control_points = self.control_points.map(|point| place.point(point));
     }
 
     fn core(&self) -> Core {

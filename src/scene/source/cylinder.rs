@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Profile, SourceKind, source, source_struct};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, source, source_struct};
 use crate::scene::values::{Checked, direction, read_vector, vector};
 
 source_struct! {
@@ -36,6 +36,11 @@ impl SourceKind for Cylinder {
         vector("point", self.point)?;
         direction("direction", self.direction)?;
         self.shared().check(brightness, &|light| light.coefficient.abs())
+    }
+
+    fn move_core(&mut self, place: &Placement) {
+        self.point = place.point(self.point);
+        self.direction = place.direction(self.direction);
     }
 
     fn core(&self) -> Core {

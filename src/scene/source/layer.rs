@@ -5,7 +5,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{Brightness, Light, Profile, Shared, item};
-use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
+use crate::scene::values::{Checked, Fault, finite, read_some_vector, vector};
 
 /// More layers than this hardly differ.
 const MOST_LAYERS: usize = 16;
@@ -56,6 +56,12 @@ impl Layer {
             peak,
             layers: &[],
         }
+    }
+
+    /// Multiplies its lengths.
+    pub(super) fn scale(&mut self, scale: f64) {
+        self.radius = self.radius.map(|radius| scale * radius);
+        self.reach = self.reach.map(|reach| scale * reach);
     }
 
     /// Returns whether a key of this name is at fault here, and not in the source.
@@ -129,8 +135,4 @@ pub(super) fn read_layers<'de, D: Deserializer<'de>>(reader: D) -> Result<Vec<La
         return Err(D::Error::custom(message));
     }
     Ok(layers)
-}
-
-fn read_some_vector<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<DVec3>, D::Error> {
-    read_vector(reader).map(Some)
 }

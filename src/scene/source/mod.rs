@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use glam::DVec3;
 
 use super::Measure;
+use super::group::Placement;
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
 
@@ -51,6 +52,20 @@ pub(crate) trait SourceKind: HasLight {
     /// Calls `add` with the emission of each of its parts, where some may be of another sign.
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
         self.lights().for_each(|light| add(light.emission()));
+    }
+
+    /// Moves its own points, directions and lengths to where a group puts them; what all kinds have is scaled for it.
+    fn move_core(&mut self, place: &Placement);
+
+    /// Returns it as a group puts it.
+    fn placed(&self, place: &Placement) -> Self
+    where
+        Self: Clone,
+    {
+        let mut placed = self.clone();
+        placed.move_core(place);
+        placed.scale(place.scale);
+        placed
     }
 
     /// Returns where its core is, of a source whose values are right.

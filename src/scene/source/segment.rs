@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Profile, SourceKind, source, source_struct};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, source, source_struct};
 use crate::scene::values::{Checked, read_vector, vector};
 
 source_struct! {
@@ -37,6 +37,11 @@ impl SourceKind for Segment {
         vector("from", self.from)?;
         vector("to", self.to)?;
         self.shared().check(brightness, &|light| light.coefficient.abs())
+    }
+
+    fn move_core(&mut self, place: &Placement) {
+        self.from = place.point(self.from);
+        self.to = place.point(self.to);
     }
 
     fn core(&self) -> Core {

@@ -57,6 +57,12 @@ macro_rules! source_struct {
                     layers: &self.layers,
                 }
             }
+
+            fn scale(&mut self, scale: f64) {
+                self.radius *= scale;
+                self.reach = self.reach.map(|reach| scale * reach);
+                self.layers.iter_mut().for_each(|layer| layer.scale(scale));
+            }
         }
     };
 }
@@ -157,6 +163,9 @@ impl<'a> Shared<'a> {
 pub(crate) trait HasLight {
     /// Returns what they say.
     fn shared(&self) -> Shared<'_>;
+
+    /// Multiplies the lengths among them.
+    fn scale(&mut self, scale: f64);
 
     /// Returns its lights, whose sum is what is seen of it.
     fn lights(&self) -> impl Iterator<Item = Light> + '_ {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Profile, SourceKind, source, source_struct};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, source, source_struct};
 use crate::scene::values::{Checked, read_vector, vector};
 
 source_struct! {
@@ -29,6 +29,10 @@ impl SourceKind for Sphere {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("center", self.center)?;
         self.shared().check(brightness, &|light| light.coefficient.abs())
+    }
+
+    fn move_core(&mut self, place: &Placement) {
+        self.center = place.point(self.center);
     }
 
     fn core(&self) -> Core {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Profile, SourceKind, plus_z, source, source_struct};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, plus_z, source, source_struct};
 use crate::scene::values::{Checked, direction, positive, read_vector, vector};
 
 source_struct! {
@@ -41,6 +41,12 @@ impl SourceKind for Torus {
         direction("axis", self.axis)?;
         positive("major_radius", self.major_radius)?;
         self.shared().check(brightness, &|light| light.coefficient.abs())
+    }
+
+    fn move_core(&mut self, place: &Placement) {
+        self.center = place.point(self.center);
+        self.axis = place.direction(self.axis);
+        self.major_radius *= place.scale;
     }
 
     fn core(&self) -> Core {
