@@ -1,14 +1,18 @@
 //! Groups: sources that are scaled, rotated and moved together, once or in many copies. A scene holds none: it gets the
 //! sources as they are placed.
 
+#[cfg(feature = "files")]
+mod names;
 mod placement;
 
 use glam::DVec3;
 
+#[cfg(feature = "files")]
+pub(super) use names::key_in_groups;
 pub(crate) use placement::Placement;
 pub use placement::{Repeat, Rotation};
 
-use super::kinds::{KIND_COUNT, KINDS, for_each_kind};
+use super::kinds::{KIND_COUNT, for_each_kind};
 use super::source::*;
 use super::values::{Checked, direction, finite, positive, vector};
 use super::{List, Measure, Scene};
@@ -182,38 +186,12 @@ impl Group {
             }
         }
     }
-
-    /// Returns the key in this group of the source that is number `index` of its kind among those that the group makes;
-    /// where it makes fewer, takes their number off the index.
-    fn key_of(&self, kind: usize, index: &mut u64) -> Option<String> {
-        let all = self.counts()[kind];
-        if *index >= all {
-            *index -= all;
-            return None;
-        }
-        *index %= all / u64::from(self.copies());
-        let own = self.own_counts()[kind] as u64;
-        if *index < own {
-            return Some(format!("{}[{index}]", KINDS[kind]));
-        }
-        *index -= own;
-        key_in(&self.groups, kind, index)
-    }
 }
 
 fn add_counts(sum: &mut [u64; KIND_COUNT], counts: [u64; KIND_COUNT]) {
     for (sum, count) in sum.iter_mut().zip(counts) {
         *sum = sum.saturating_add(count);
     }
-}
-
-/// Returns the key of a source that groups make, such as `group[1].segment[0]`.
-fn key_in(groups: &[Group], kind: usize, index: &mut u64) -> Option<String> {
-    let mut numbered = groups.iter().enumerate();
-    numbered.find_map(|(number, group)| {
-        let inside = group.key_of(kind, index)?;
-        Some(format!("group[{number}].{inside}"))
-    })
 }
 
 impl Scene {
@@ -251,20 +229,4 @@ impl Scene {
         }
         Ok(())
     }
-}
-
-/// Returns the key in a file of a source of a scene, such as `segment[7].to`, where groups made it: they made the last
-/// of the scene's sources; `before` tells how many of each kind were there already.
-#[cfg(feature = "files")]
-pub(super) fn key_in_groups(
-    key: &str,
-    groups: &[Group],
-    before: &[usize; KIND_COUNT],
-) -> Option<String> {
-    let (kind, rest) = key.split_once('[')?;
-    let (index, rest) = rest.split_once(']')?;
-    let kind = KINDS.iter().position(|it| *it == kind)?;
-    let index: u64 = index.parse().ok()?;
-    let mut index = index.checked_sub(before[kind] as u64)?;
-    Some(key_in(groups, kind, &mut index)? + rest)
 }
