@@ -194,7 +194,7 @@ impl Wave {
             kinds: self.packed.sources.counts().map(|count| count > 0),
             has_squares: self.packed.facts(scene).has_squares,
             has_shapes: self.packed.facts(scene).has_shapes,
-            has_series: !self.packed.sources.spline_pieces.is_empty(),
+            has_series: self.packed.sources.rows.has_series,
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
             film,
             rays,
