@@ -146,11 +146,11 @@ mod tests {
             vec![0.1, 0.9, 0.4, 0.7],
         ] {
             let pieces: Vec<_> = spline_pieces(&series, 0.5).collect();
-            assert_eq!(rows.list.len(), series.len() - 2);
+            assert_eq!(pieces.len(), series.len() - 2);
             for k in 0..=100 {
                 let t = f64::from(k) / 100.0;
-                let scaled = t * rows.list.len() as f64;
-                let index = (scaled as usize).min(rows.list.len() - 1);
+                let scaled = t * pieces.len() as f64;
+                let index = (scaled as usize).min(pieces.len() - 1);
                 let x = scaled - index as f64;
                 let [c0, c1, c2, _] = pieces[index].map(f64::from);
                 let value = c0 + x * (c1 + x * c2);
