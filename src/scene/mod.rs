@@ -7,6 +7,7 @@
 mod camera;
 #[cfg(feature = "files")]
 mod depth_report;
+mod extent;
 #[cfg(feature = "files")]
 mod file;
 mod group;
@@ -101,6 +102,12 @@ macro_rules! define_scene {
 for_each_kind!(define_scene);
 
 impl Scene {
+    /// Returns the projection plane, from which every pixel has its ray.
+    #[must_use]
+    pub fn view_plane(&self) -> ViewPlane {
+        ViewPlane::new(&self.camera, self.image, self.ray_length())
+    }
+
     /// Returns where a device takes this scene's integrals, see [`Sampling`].
     #[must_use]
     pub fn sampling(&self) -> Sampling {

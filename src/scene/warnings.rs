@@ -163,6 +163,7 @@ pub(crate) mod tests {
     /// From (0, -4, 0) along +y: the plane is at y = -3, the rays end 15 behind it.
     pub(in crate::scene) fn scene() -> Scene {
         let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO));
+        scene.camera.ray_length = Some(15.0);
         scene.image = ImageSize {
             width: 8,
             height: 6,

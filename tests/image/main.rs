@@ -6,6 +6,7 @@ mod common;
 
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
+mod defaults; // looks at a scene that names nothing
 mod depth; // compares occluded images with those of rays that are cut by hand
 mod exact; // holds the method `exact` to every tolerance
 mod figures; // draws every scene by every method in the form of the device

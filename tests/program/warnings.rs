@@ -78,8 +78,8 @@ fn warnings_have_file_line_column_and_key_and_are_told_quietly_too() {
             "behind the eye",
         ),
         (
-            "[[sphere]]\ncenter = [0, 90, 0]\n",
-            "4:1: sphere[0]",
+            "ray_length = 20\n[[sphere]]\ncenter = [0, 90, 0]\n",
+            "5:1: sphere[0]",
             "beyond the end of the rays",
         ),
     ] {

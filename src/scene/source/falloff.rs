@@ -13,9 +13,9 @@ use crate::scene::values::{Checked, Fault, finite, positive};
 #[non_exhaustive]
 pub enum Profile {
     /// `1/d` (2015, 2010).
-    #[default]
     Inverse,
     /// `1/d^2` (Sakai 2006).
+    #[default]
     InverseSquare,
     /// `1/d^3`; with a radius that of Plummer's sphere.
     InverseCube,
@@ -176,6 +176,7 @@ mod tests {
     #[track_caller]
     fn expect(change: impl Fn(&mut Sphere), key: &str, words: &str) {
         let mut scene = Scene::new(Camera::new(-4.0 * DVec3::Y, DVec3::ZERO));
+        scene.integration.measure = Measure::Parameter;
         let mut sphere = Sphere::default();
         change(&mut sphere);
         scene.spheres.push(sphere);

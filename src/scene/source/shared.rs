@@ -13,8 +13,8 @@ macro_rules! source_struct {
         $(#[$attribute])*
         $visibility struct $Type {
             $($fields)*
-            /// The papers' energy coefficient; of a beam that of its line.
-            #[serde(default = "crate::scene::source::one")]
+            /// The papers' energy coefficient; of a beam that of its line. 0.01 unless it is named.
+            #[serde(default = "crate::scene::source::faint")]
             pub coefficient: f64,
             /// Linear RGB.
             #[serde(
@@ -104,7 +104,7 @@ pub(crate) struct Shared<'a> {
 impl Default for Shared<'_> {
     fn default() -> Self {
         Self {
-            coefficient: super::one(),
+            coefficient: super::faint(),
             color: super::white(),
             profile: Profile::default(),
             radius: 0.0,
@@ -143,6 +143,17 @@ impl<'a> Shared<'a> {
             .enumerate()
             .filter_map(|(index, color)| Some((Some(index), color?)));
         own.into_iter().chain(named)
+    }
+
+    /// Returns the distance at which all light ends; `None` where some has no end.
+    pub(crate) fn farthest_reach(&self) -> Option<f64> {
+        let mut layers = self.layers.iter();
+        match self.layers {
+            [] => self.reach,
+            _ => layers.try_fold(0.0, |farthest: f64, layer| {
+                Some(farthest.max(layer.reach.or(self.reach)?))
+            }),
+        }
     }
 
     /// Returns how many lights they make.
