@@ -8,10 +8,9 @@ use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use energywave::image::ImageSize;
-use energywave::internals::ViewPlane;
 use energywave::internals::pack::{Anchor, SourceFacts, Sources};
 use energywave::papers::{DIVISIONS, RESOLUTIONS, Table, turned};
-use energywave::scene::{Curve, Cylinder, Method, Sphere, Torus};
+use energywave::scene::{Curve, Cylinder, Method, Profile, Sphere, Torus};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 
@@ -53,18 +52,28 @@ fn crowd(kind: &str, count: u32) -> Scene {
         match kind {
             "spheres" => scene.spheres.push(Sphere {
                 center: point(),
+                profile: Profile::Inverse,
+                coefficient: 1.0,
                 ..Sphere::default()
             }),
             "cylinders" => scene.cylinders.push(Cylinder {
                 point: point(),
+                profile: Profile::Inverse,
+                coefficient: 1.0,
                 ..Cylinder::new(point())
             }),
             "tori" => scene.tori.push(Torus {
                 center: point(),
                 axis: point(),
+                profile: Profile::Inverse,
+                coefficient: 1.0,
                 ..Torus::new(0.5)
             }),
-            _ => scene.curves.push(Curve::new([point(), point(), point()])),
+            _ => scene.curves.push(Curve {
+                profile: Profile::Inverse,
+                coefficient: 1.0,
+                ..Curve::new([point(), point(), point()])
+            }),
         }
     }
     scene
@@ -123,7 +132,7 @@ fn of_every_source(criterion: &mut Criterion) {
         width: 128,
         height: 128,
     };
-    let plane = ViewPlane::new(&scene.camera, scene.image);
+    let plane = scene.view_plane();
     let anchor = Anchor::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
     let mut group = criterion.benchmark_group("100000 spheres");
     group.bench_function("validate", |bencher| {

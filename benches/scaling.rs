@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use energywave::image::ImageSize;
 use energywave::papers::{Table, exact_cost, measure};
-use energywave::scene::{Curve, Method, Sampling, Sphere};
+use energywave::scene::{Curve, Method, Profile, Sampling, Sphere};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 use plotters::prelude::*;
@@ -108,6 +108,8 @@ fn spheres(count: u32) -> Scene {
         .into_iter()
         .map(|center| Sphere {
             center,
+            profile: Profile::Inverse,
+            coefficient: 1.0,
             ..Sphere::default()
         })
         .collect();
@@ -119,7 +121,11 @@ fn curves(count: u32) -> Scene {
     let points = points(3 * count);
     scene.curves = points
         .chunks(3)
-        .map(|p| Curve::new([p[0], p[1], p[2]]))
+        .map(|p| Curve {
+            profile: Profile::Inverse,
+            coefficient: 1.0,
+            ..Curve::new([p[0], p[1], p[2]])
+        })
         .collect();
     scene
 }

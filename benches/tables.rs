@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use energywave::image::compare;
 use energywave::internals::pack::{self, layout};
 use energywave::internals::{
-    self, Compute, DeviceBuffer, FilmPart, OpenClDevice, Program, ViewPlane, discover,
+    self, Compute, DeviceBuffer, FilmPart, OpenClDevice, Program, discover,
 };
 use energywave::papers::{DIVISIONS, FRAMES_PER_TURN, RESOLUTIONS, Table, measure, turned};
 use energywave::scene::Method;
@@ -108,7 +108,7 @@ impl Plain {
         };
         let mut render = |frame: u32, image: &mut [[f32; 4]]| {
             let scene = turned(scene, frame);
-            let plane = ViewPlane::new(&scene.camera, scene.image);
+            let plane = scene.view_plane();
             let view = pack::view(&plane, &scene);
             source
                 .write(&self.compute, &parameters(&scene, plane.eye))

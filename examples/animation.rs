@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use energywave::image::{Display, ImageSize, ToneMap};
-use energywave::scene::{Camera, Decay, Profile, Segment, Sphere};
+use energywave::scene::{Camera, Decay, Measure, Profile, Segment, Sphere};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 
@@ -28,6 +28,7 @@ fn scene_at(time: f64) -> Scene {
         width: 320,
         height: 180,
     };
+    scene.integration.measure = Measure::Parameter;
     scene.decay = Some(Decay {
         alpha: 1.0,
         beta: 1.0,

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use energywave::image::{Display, ImageSize, ToneMap};
 use energywave::papers::{camera_2010, tetrahedra};
-use energywave::scene::{Beam, Measure};
+use energywave::scene::{Beam, Measure, Profile};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 
@@ -25,6 +25,7 @@ fn main() -> energywave::Result<()> {
         coefficient: 30.0,
         sphere_coefficient: 60.0,
         color: DVec3::new(0.3, 0.6, 1.0),
+        profile: Profile::Inverse,
         ..Beam::new(DVec3::X)
     });
     scene.display = Display {

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::{error, ptr};
 
 use energywave::image::ImageSize;
-use energywave::scene::{Camera, Decay, Profile, Torus};
+use energywave::scene::{Camera, Torus};
 use energywave::{HostTarget, RadianceImage, Renderer, Scene};
 use glam::DVec3;
 use opencl3::command_queue::CommandQueue;
@@ -47,14 +47,8 @@ fn main() -> Result<(), Box<dyn error::Error>> {
     let mut renderer = Renderer::on_host(&context, &queue)?;
     let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
     scene.image = SIZE;
-    scene.decay = Some(Decay {
-        alpha: 0.1,
-        beta: 0.1,
-    });
     for step in 0..3 {
         scene.tori = vec![Torus {
-            coefficient: 0.06,
-            profile: Profile::InverseSquare,
             color: DVec3::new(1.0, 0.5, 0.15),
             ..Torus::new(0.7 + 0.15 * f64::from(step))
         }]

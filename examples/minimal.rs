@@ -4,20 +4,14 @@
 
 use std::path::PathBuf;
 
-use energywave::scene::{Camera, Decay, Profile, Torus};
+use energywave::scene::{Camera, Torus};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
 
 fn main() -> energywave::Result<()> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_default());
     let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
-    scene.decay = Some(Decay {
-        alpha: 0.1,
-        beta: 0.1,
-    });
     scene.tori.push(Torus {
-        coefficient: 0.06,
-        profile: Profile::InverseSquare,
         color: DVec3::new(0.15, 0.35, 1.0),
         ..Torus::new(0.9)
     });

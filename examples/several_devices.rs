@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use energywave::image::ImageSize;
-use energywave::scene::{Camera, Curve, Decay, Profile};
+use energywave::scene::{Camera, Curve};
 use energywave::{Devices, Renderer, RendererOptions, Scene};
 use glam::DVec3;
 
@@ -17,13 +17,7 @@ fn main() -> energywave::Result<()> {
         width: 480,
         height: 360,
     };
-    scene.decay = Some(Decay {
-        alpha: 0.1,
-        beta: 0.1,
-    });
     scene.curves.push(Curve {
-        coefficient: 0.05,
-        profile: Profile::InverseSquare,
         color: DVec3::new(0.15, 1.0, 0.35),
         ..Curve::new([
             DVec3::new(-1.2, 0.0, -0.6),

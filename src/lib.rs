@@ -21,16 +21,13 @@
 //! tone-mapped into a [`DisplayImage`]. [`mod@reference`] computes the same in float64 by another method.
 //!
 //! ```no_run
-//! use energywave::scene::{Camera, Decay, Profile, Torus};
+//! use energywave::scene::{Camera, Torus};
 //! use energywave::{Device, Renderer, Scene};
 //! use energywave::glam::DVec3;
 //!
 //! # fn main() -> energywave::Result<()> {
 //! let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
-//! scene.decay = Some(Decay { alpha: 0.1, beta: 0.1 });
 //! scene.tori.push(Torus {
-//!     coefficient: 0.06,
-//!     profile: Profile::InverseSquare,
 //!     color: DVec3::new(0.15, 0.35, 1.0),
 //!     ..Torus::new(0.9)
 //! });

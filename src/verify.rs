@@ -9,7 +9,8 @@ use crate::error::{Error, Result};
 use crate::reference;
 use crate::render::Renderer;
 use crate::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Method, Profile, Ray, Scene, Sphere, Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Measure, Method, Profile, Ray, Scene, Sphere,
+    Torus,
 };
 
 /// The rays that every copy of the crate carries.
@@ -172,38 +173,51 @@ impl RayRecord {
         };
         let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO));
         scene.decay = Some(Decay { alpha, beta });
+        scene.integration.measure = Measure::Parameter;
         match kind {
             "sphere" => scene.spheres.push(Sphere {
                 center: self.center,
+                profile: Profile::Inverse,
+                coefficient: 1.0,
                 ..Sphere::default()
             }),
             "cylinder" => scene.cylinders.push(Cylinder {
                 point: self.center,
+                profile: Profile::Inverse,
+                coefficient: 1.0,
                 ..Cylinder::new(self.direction)
             }),
             "beam" => scene.beams.push(Beam {
                 tip: self.center,
+                profile: Profile::Inverse,
+                coefficient: 1.0,
                 ..Beam::new(self.direction)
             }),
             "sphere-inverse-square" => scene.spheres.push(Sphere {
                 center: self.center,
                 profile: Profile::InverseSquare,
+                coefficient: 1.0,
                 ..Sphere::default()
             }),
             "beam-inverse-square" => scene.beams.push(Beam {
                 tip: self.center,
                 end: BeamEnd::Taper(self.taper_length),
                 profile: Profile::InverseSquare,
+                coefficient: 1.0,
                 ..Beam::new(self.direction)
             }),
             "torus" => scene.tori.push(Torus {
                 center: self.center,
                 axis: self.axis,
+                profile: Profile::Inverse,
+                coefficient: 1.0,
                 ..Torus::new(self.major_radius)
             }),
             "curve" | "curve-weighted" | "curve-straight" | "curve-cusp" => {
                 scene.curves.push(Curve {
                     intensity: (!self.weights.is_empty()).then(|| self.weights.clone()),
+                    profile: Profile::Inverse,
+                    coefficient: 1.0,
                     ..Curve::new(self.control_points)
                 });
             }

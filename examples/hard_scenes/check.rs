@@ -239,7 +239,7 @@ impl<'a> Tracer<'a> {
     fn new(scene: &'a Scene) -> Self {
         Self {
             scene,
-            plane: ViewPlane::new(&scene.camera, scene.image),
+            plane: scene.view_plane(),
             sources: sources(scene),
             ties: tied_sources(scene, false)
                 .zip(tied_sources(scene, true))

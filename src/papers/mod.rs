@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::image::{Difference, ImageSize, RadianceImage, compare};
 use crate::opencl::RendererOptions;
 use crate::render::{Device, Renderer};
-use crate::scene::{Camera, Curve, Decay, Method, Scene, Torus};
+use crate::scene::{Camera, Curve, Decay, Measure, Method, Profile, Scene, Torus};
 
 /// Camera positions of one turn around the scene.
 pub const FRAMES_PER_TURN: u32 = 64;
@@ -92,12 +92,15 @@ impl Table {
             beta: 0.1,
         });
         scene.integration.method = Method::Simpson { divisions };
+        scene.integration.measure = Measure::Parameter;
         match self {
             Self::Torus => scene.tori.push(Torus {
+                profile: Profile::Inverse,
                 coefficient: 5.1,
                 ..Torus::new(0.9)
             }),
             Self::Bezier => scene.curves.push(Curve {
+                profile: Profile::Inverse,
                 coefficient: 5.0,
                 ..Curve::new([
                     DVec3::new(-1.2, -0.2, 0.1),

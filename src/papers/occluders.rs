@@ -23,7 +23,7 @@ const CORNERS: [DVec3; 4] = [
 /// # Errors
 /// None for sizes that an image can have.
 pub fn tetrahedra(camera: &Camera, size: ImageSize) -> Result<DepthImage> {
-    let plane = ViewPlane::new(camera, size);
+    let plane = ViewPlane::new(camera, size, 1.0);
     let faces: Vec<[DVec3; 3]> = TETRAHEDRA
         .into_iter()
         .flat_map(|(place, reach)| {

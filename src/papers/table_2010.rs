@@ -8,7 +8,7 @@ use super::occluders::tetrahedra;
 use crate::error::{Error, Result};
 use crate::image::ImageSize;
 use crate::reference;
-use crate::scene::{Beam, BeamEnd, Camera, Measure, Scene};
+use crate::scene::{Beam, BeamEnd, Camera, Measure, Profile, Scene};
 
 /// A cell of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +69,7 @@ impl Cell2010 {
             coefficient: 30.0,
             end: BeamEnd::Cap(Some(60.0)),
             sphere_coefficient: 60.0,
+            profile: Profile::Inverse,
             ..Beam::new(DVec3::X)
         });
         if self.has_depth {

@@ -152,7 +152,7 @@ pub(crate) fn render_rows(
     target: &mut [f32],
     progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
 ) -> Result<()> {
-    let plane = ViewPlane::new(&scene.camera, scene.image);
+    let plane = scene.view_plane();
     let tracer = Tracer::new(scene, method);
     let band_len = tracer.band_len();
     let first = rows.start as usize * scene.image.width as usize;

@@ -362,7 +362,7 @@ fn draw_reference(
 /// Returns the cost of a frame on the reference, all of whose time counts as the kernels'; the samples of its adaptive
 /// quadrature are not counted.
 fn reference_cost(scene: &Scene, pixels: usize, time: Duration) -> FrameCost {
-    let integrals = pixels as u64 * scene.source_count() as u64;
+    let integrals = pixels as u64 * scene.light_count() as u64;
     let samples = match scene.integration.method {
         Method::Simpson { divisions } => u64::from(divisions) + 1,
         Method::Exact { .. } => 0,

@@ -289,7 +289,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::image::ImageSize;
     use crate::opencl::discover;
-    use crate::scene::{Camera, Decay, Method, Torus};
+    use crate::scene::{Camera, Decay, Method, Profile, Torus};
 
     /// Makes a scene of a ring seen from 4 away, `size` pixels wide and high, by Simpson's rule.
     pub(crate) fn ring(size: u32) -> Scene {
@@ -303,7 +303,11 @@ pub(crate) mod tests {
             beta: 0.1,
         });
         scene.integration.method = Method::Simpson { divisions: 64 };
-        scene.tori.push(Torus::new(0.9));
+        scene.tori.push(Torus {
+            profile: Profile::Inverse,
+            coefficient: 1.0,
+            ..Torus::new(0.9)
+        });
         scene
     }
 

@@ -24,8 +24,8 @@ pub struct Camera {
     /// Distance from the eye to the projection plane, where the rays begin, world units.
     #[serde(default = "default_near")]
     pub near: f64,
-    /// Length of every ray, `|E - S|`, world units; `None`: 5 times the distance from the projection plane to the
-    /// target.
+    /// Length of every ray, `|E - S|`, world units; `None`: one that passes all sources
+    /// ([`Scene::ray_length`](super::Scene::ray_length)).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ray_length: Option<f64>,
 }
@@ -42,13 +42,6 @@ impl Camera {
             near: default_near(),
             ray_length: None,
         }
-    }
-
-    /// Returns the length of every ray, `|E - S|`, world units.
-    #[must_use]
-    pub fn ray_length(&self) -> f64 {
-        let beyond_plane = self.eye.distance(self.target) - self.near;
-        self.ray_length.unwrap_or(5.0 * beyond_plane)
     }
 
     pub(super) fn check(&self) -> Checked {
@@ -69,15 +62,8 @@ impl Camera {
         if view.normalize().cross(self.up.normalize()).length() < 1e-6 {
             return Err(Fault::new("up", self.parallel_up(view)));
         }
-        match self.ray_length {
-            Some(length) => positive("ray_length", length),
-            None if self.ray_length() < SMALLEST => Err(Fault::new(
-                "near",
-                "the projection plane lies behind the target, so ray_length has no default: \
-                 give camera.ray_length, or a smaller near",
-            )),
-            None => Ok(()),
-        }
+        self.ray_length
+            .map_or(Ok(()), |length| positive("ray_length", length))
     }
 
     /// Says that `up` is parallel to the view, and which would not be; scenes often leave it out.

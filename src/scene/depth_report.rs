@@ -1,7 +1,7 @@
 //! What a scene's depths come to: which channel, from where to where, and how many of them lie where nothing is drawn.
 //! Depths in other units give a black picture, or one in which nothing is hidden, and no fault.
 
-use super::{Camera, Scene, ViewPlane};
+use super::{Scene, ViewPlane};
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::shown::shown;
 
@@ -35,7 +35,7 @@ impl Scene {
     #[must_use]
     pub fn depth_report(&self) -> Option<DepthReport> {
         let depth = self.depth.as_ref()?;
-        let counts = Counts::of(depth, &self.camera, self.image);
+        let counts = Counts::of(depth, &self.view_plane(), self.image);
         let share = |count: usize| count as f64 / counts.pixels.max(1) as f64;
         Some(DepthReport {
             channel: depth.channel().map(str::to_owned),
@@ -43,7 +43,7 @@ impl Scene {
             without: share(counts.pixels - counts.with),
             before_plane: share(counts.before),
             beyond_rays: share(counts.beyond),
-            warnings: warnings(depth, &self.camera, &counts),
+            warnings: warnings(depth, self, &counts),
         })
     }
 }
@@ -80,8 +80,7 @@ struct Counts {
 }
 
 impl Counts {
-    fn of(depth: &DepthImage, camera: &Camera, image: ImageSize) -> Self {
-        let plane = ViewPlane::new(camera, image);
+    fn of(depth: &DepthImage, plane: &ViewPlane, image: ImageSize) -> Self {
         let mut counts = Self {
             pixels: depth.as_slice().len(),
             with: 0,
@@ -116,7 +115,8 @@ impl Counts {
     }
 }
 
-fn warnings(depth: &DepthImage, camera: &Camera, counts: &Counts) -> Vec<String> {
+fn warnings(depth: &DepthImage, scene: &Scene, counts: &Counts) -> Vec<String> {
+    let camera = &scene.camera;
     let mut found = Vec::new();
     if let (Some(all), Some(channel)) = (depth.doubt(), depth.channel()) {
         found.push(format!(
@@ -148,7 +148,7 @@ fn warnings(depth: &DepthImage, camera: &Camera, counts: &Counts) -> Vec<String>
             "{} of the depths lie beyond the ends of the rays, {} from the projection plane, so that they hide \
              nothing: likely they are in other units; give `scale`",
             percent(counts.beyond as f64 / others as f64),
-            camera.ray_length()
+            scene.ray_length()
         ));
     } else if counts.zero > 0 {
         found.push(format!(
@@ -173,6 +173,7 @@ fn percent(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Camera;
     use glam::DVec3;
 
     /// Eye at 4 before the origin, plane at 1, rays of 8; what is said of depths of a function of the column, 0 to 99.

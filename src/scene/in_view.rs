@@ -1,7 +1,7 @@
 //! Whether any source is where rays may meet its core: a field reaches everywhere, but glows next to its core.
 
+use super::Scene;
 use super::source::Core;
-use super::{Scene, ViewPlane};
 use crate::error::SceneError;
 
 /// Why the core of a source is in no ray's way.
@@ -15,7 +15,7 @@ enum Unseen {
 impl Scene {
     /// Says that no core is where a ray might meet it: then at most the glow around cores is seen.
     pub(super) fn out_of_view(&self) -> Option<SceneError> {
-        let plane = ViewPlane::new(&self.camera, self.image);
+        let plane = self.view_plane();
         let forward = (self.camera.target - self.camera.eye).normalize();
         let eye = self.camera.eye.dot(forward);
         let reach = plane.first_pixel.length() + plane.ray_length;

@@ -46,7 +46,7 @@ impl Default for Integration {
     fn default() -> Self {
         Self {
             method: Method::default(),
-            measure: Measure::Parameter,
+            measure: Measure::Length,
             softening: 0.0,
         }
     }

@@ -1,9 +1,12 @@
 //! A list that knows whether it changed, so that what was made of it can be kept.
 
 use std::ops::{Deref, DerefMut};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::extent::Extent;
 
 /// A `Vec` with a revision: two lists of one revision hold the same. It reads and changes like the `Vec` it
 /// dereferences to; every mutable access counts as a change.
@@ -19,6 +22,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 pub struct List<T> {
     items: Vec<T>,
     revision: u64,
+    /// Where they are, once somebody asked.
+    extent: OnceLock<Extent>,
 }
 
 impl<T> List<T> {
@@ -28,7 +33,13 @@ impl<T> List<T> {
         Self {
             items: Vec::new(),
             revision: 0,
+            extent: OnceLock::new(),
         }
+    }
+
+    /// Returns where the sources are, which is found once for each revision.
+    pub(super) fn extent(&self, find: impl FnOnce(&[T]) -> Extent) -> Extent {
+        *self.extent.get_or_init(|| find(&self.items))
     }
 
     /// Returns a number that no list of other contents has had in this process.
@@ -51,7 +62,11 @@ impl<T> Default for List<T> {
 impl<T> From<Vec<T>> for List<T> {
     fn from(items: Vec<T>) -> Self {
         let revision = if items.is_empty() { 0 } else { new_revision() };
-        Self { items, revision }
+        Self {
+            items,
+            revision,
+            extent: OnceLock::new(),
+        }
     }
 }
 
@@ -72,6 +87,7 @@ impl<T> Deref for List<T> {
 impl<T> DerefMut for List<T> {
     fn deref_mut(&mut self) -> &mut Vec<T> {
         self.revision = new_revision();
+        self.extent = OnceLock::new();
         &mut self.items
     }
 }

@@ -7,8 +7,11 @@
 mod camera;
 #[cfg(feature = "files")]
 mod depth_report;
+mod exposure;
+mod extent;
 #[cfg(feature = "files")]
 mod file;
+mod group;
 mod in_view;
 mod integration;
 pub(crate) mod kinds;
@@ -27,6 +30,7 @@ pub use camera::Camera;
 pub use depth_report::DepthReport;
 #[cfg(feature = "files")]
 pub use file::MethodKeys;
+pub use group::{Group, Repeat, Rotation};
 pub use integration::{CORE_FLOOR, Decay, Integration, Measure, Method, Sampling};
 pub use list::List;
 pub use ray::{Ray, ViewPlane};
@@ -79,14 +83,19 @@ macro_rules! define_scene {
                 0 $(+ self.$list.len())*
             }
 
+            /// Returns the number of their lights: a source has one, or one a layer.
+            pub(crate) fn light_count(&self) -> usize {
+                0 $(+ self.$list.iter().map(|source| source.shared().light_count()).sum::<usize>())*
+            }
+
             /// Calls `add` with the emission of all parts of all sources.
             fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
                 $(self.$list.iter().for_each(|source| source.for_each_emission(add));)*
             }
 
-            /// Returns whether any source falls off in such a way.
+            /// Returns whether any light falls off in such a way.
             pub(crate) fn any_falloff(&self, is_such: impl Fn(Falloff) -> bool) -> bool {
-                $(self.$list.iter().any(|source| is_such(source.light().falloff)))||*
+                $(self.$list.iter().any(|source| source.lights().any(|light| is_such(light.falloff))))||*
             }
         }
     };
@@ -94,6 +103,12 @@ macro_rules! define_scene {
 for_each_kind!(define_scene);
 
 impl Scene {
+    /// Returns the projection plane, from which every pixel has its ray.
+    #[must_use]
+    pub fn view_plane(&self) -> ViewPlane {
+        ViewPlane::new(&self.camera, self.image, self.ray_length())
+    }
+
     /// Returns where a device takes this scene's integrals, see [`Sampling`].
     #[must_use]
     pub fn sampling(&self) -> Sampling {

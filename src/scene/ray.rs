@@ -68,9 +68,10 @@ pub struct ViewPlane {
 }
 
 impl ViewPlane {
-    /// Places the plane at distance `camera.near` from the eye, divided into the image's pixels.
+    /// Places the plane at distance `camera.near` from the eye, divided into the image's pixels, for rays of a length
+    /// ([`Scene::ray_length`](super::Scene::ray_length)).
     #[must_use]
-    pub fn new(camera: &Camera, image: ImageSize) -> Self {
+    pub fn new(camera: &Camera, image: ImageSize, ray_length: f64) -> Self {
         let forward = (camera.target - camera.eye).normalize();
         let right = forward.cross(camera.up).normalize();
         let up = right.cross(forward);
@@ -87,7 +88,7 @@ impl ViewPlane {
                 - row_step * middle_row,
             column_step,
             row_step,
-            ray_length: camera.ray_length(),
+            ray_length,
             near: camera.near,
         }
     }

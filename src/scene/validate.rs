@@ -1,7 +1,7 @@
 //! The one check of a scene's values. What passes here needs no further check, neither in packing nor in a kernel.
 
 use super::kinds::for_each_kind;
-use super::values::{Checked, Fault, finite};
+use super::values::{Checked, Fault, SMALLEST, finite};
 use super::{BRIGHTEST, Brightness, CORE_FLOOR, List, Measure, Scene, SourceKind, SourcesStamp};
 use crate::error::{Result, SceneError};
 use crate::image::{Display, ImageSize};
@@ -44,6 +44,7 @@ impl Scene {
     fn check_but_sources(&self) -> std::result::Result<Brightness, SceneError> {
         let of = |table: &'static str| move |fault: Fault| fault.of(table);
         self.camera.check().map_err(of("camera"))?;
+        self.check_ray_length().map_err(of("camera"))?;
         check_size(self.image).map_err(of("image"))?;
         if let Some(decay) = &self.decay {
             decay.check().map_err(of("decay"))?;
@@ -70,7 +71,7 @@ impl Scene {
     /// Returns the greatest value that decay times field times measure can take, on a ray through a core.
     fn brightness(&self) -> Brightness {
         let decay = self.decay.map_or(1.0, |decay| decay.at(0.0));
-        let length = self.camera.ray_length();
+        let length = self.ray_length();
         let least_distance = (CORE_FLOOR * length).max(self.integration.softening);
         let measure = match self.integration.measure {
             Measure::Parameter => 1.0,
@@ -81,6 +82,15 @@ impl Scene {
             least_distance,
             measure: self.integration.measure,
         }
+    }
+
+    fn check_ray_length(&self) -> Checked {
+        if self.camera.ray_length.is_some() || self.ray_length() >= SMALLEST {
+            return Ok(());
+        }
+        let message = "the projection plane lies behind the target and all sources, so ray_length has no default: \
+            give camera.ray_length, or a smaller near";
+        Err(Fault::new("near", message))
     }
 
     fn check_depth(&self) -> Checked {

@@ -29,6 +29,11 @@ impl Fault {
         }
     }
 
+    /// Returns its key in the table.
+    pub(super) fn key(&self) -> &str {
+        &self.key
+    }
+
     /// Moves the fault to another key.
     pub(crate) fn at(self, key: Cow<'static, str>) -> Self {
         Self { key, ..self }
@@ -105,6 +110,13 @@ pub(crate) fn read_vectors<'de, D: Deserializer<'de>>(reader: D) -> Result<Vec<D
     struct Vector(#[serde(deserialize_with = "read_vector")] DVec3);
     let vectors = Vec::<Vector>::deserialize(reader)?;
     Ok(vectors.into_iter().map(|vector| vector.0).collect())
+}
+
+/// Reads three numbers for a key that may be absent.
+pub(crate) fn read_some_vector<'de, D: Deserializer<'de>>(
+    reader: D,
+) -> Result<Option<DVec3>, D::Error> {
+    read_vector(reader).map(Some)
 }
 
 /// Makes a reader's message about a key of the table that it reads; [`unnamed`] takes it apart again.

@@ -19,7 +19,8 @@ const LEAST_BYTE: f64 = 16.0;
 pub(super) struct Seen {
     kind: &'static str,
     index: usize,
-    color: DVec3,
+    /// The first of its colours that looks like 0 to 255, with the layer that names it.
+    byte_color: Option<(Option<usize>, DVec3)>,
     pub core: Core,
     /// The least and the greatest light of its parts, of all channels.
     pub light: (f64, f64),
@@ -37,7 +38,7 @@ impl Seen {
         Self {
             kind,
             index,
-            color: source.light().color,
+            byte_color: source.shared().colors().find(|(_, color)| is_bytes(*color)),
             core: source.core(),
             light,
         }
@@ -46,6 +47,12 @@ impl Seen {
     pub(super) fn key(&self) -> String {
         format!("{}[{}]", self.kind, self.index)
     }
+}
+
+/// Returns whether a colour looks like 0 to 255.
+fn is_bytes(color: DVec3) -> bool {
+    let is_byte = |value: f64| (0.0..=255.0).contains(&value) && value.fract() == 0.0;
+    color.to_array().into_iter().all(is_byte) && color.max_element() >= LEAST_BYTE
 }
 
 macro_rules! see_sources {
@@ -98,20 +105,21 @@ impl Scene {
         let mut first: Option<SceneError> = None;
         let mut more = 0;
         self.all_sources(&mut |source| {
-            let color = source.color.to_array();
-            let is_byte = |value: f64| (0.0..=255.0).contains(&value) && value.fract() == 0.0;
-            if !color.into_iter().all(is_byte) || source.color.max_element() < LEAST_BYTE {
+            let Some((layer, color)) = source.byte_color else {
                 return true;
-            }
+            };
             if first.is_some() {
                 more += 1;
                 return true;
             }
+            let color = color.to_array();
             let [red, green, blue] = color.map(|value| (value / 255.0 * 1000.0).round() / 1000.0);
             let message = format!(
                 "{color:?} looks like 0 to 255; colours are linear and 1 is white: write [{red:?}, {green:?}, {blue:?}]"
             );
-            first = Some(SceneError::value(format!("{}.color", source.key()), message));
+            let layer = layer.map_or(String::new(), |index| format!(".layers[{index}]"));
+            let key = format!("{}{layer}.color", source.key());
+            first = Some(SceneError::value(key, message));
             true
         });
         if let (Some(first), 1..) = (&mut first, more) {
@@ -150,11 +158,12 @@ impl Scene {
 pub(crate) mod tests {
     use super::*;
     use crate::image::ImageSize;
-    use crate::scene::{Camera, Curve, Sphere, Torus};
+    use crate::scene::{Camera, Curve, Layer, Sphere, Torus};
 
     /// From (0, -4, 0) along +y: the plane is at y = -3, the rays end 15 behind it.
     pub(in crate::scene) fn scene() -> Scene {
         let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO));
+        scene.camera.ray_length = Some(15.0);
         scene.image = ImageSize {
             width: 8,
             height: 6,
@@ -221,6 +230,35 @@ pub(crate) mod tests {
             "sphere[0].color",
             "(4 more sources have such colours)",
         );
+    }
+
+    #[test]
+    fn layers_are_warned_of_as_sources_are() {
+        let layer = |coefficient, color: Option<DVec3>| Layer {
+            coefficient: Some(coefficient),
+            color,
+            ..Layer::default()
+        };
+        let mut scene = scene();
+        scene.spheres.push(Sphere {
+            color: DVec3::new(255.0, 0.0, 0.0),
+            layers: vec![layer(1.0, Some(DVec3::ONE)), layer(0.0, Some(DVec3::X))],
+            ..sphere(0.0)
+        });
+        assert_eq!(
+            scene.warnings(),
+            [],
+            "no light has the colour of the source"
+        );
+        scene.spheres[0].layers[1].color = Some(DVec3::new(0.0, 0.0, 255.0));
+        expect(&scene, "sphere[0].layers[1].color", "write [0.0, 0.0, 1.0]");
+        scene.spheres[0].layers[1].color = None;
+        expect(&scene, "sphere[0].color", "write [1.0, 0.0, 0.0]");
+        scene.spheres[0].layers = vec![layer(0.0, None), layer(0.0, Some(DVec3::X))];
+        scene.spheres[0].color = DVec3::ONE;
+        expect(&scene, "sphere[0]", "gives no light");
+        scene.spheres[0].layers[1].coefficient = Some(1.0);
+        assert_eq!(scene.warnings(), []);
     }
 
     #[test]

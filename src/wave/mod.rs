@@ -32,7 +32,7 @@ use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{DepthImage, ImageSize};
 use crate::opencl::{Compute, FilmFormat, Handle, RendererOptions, UploadedShared, Watch};
-use crate::scene::{Method, Ray, Scene, ViewPlane};
+use crate::scene::{Method, Ray, Scene};
 use counts::Counts;
 use dispatch::Launched;
 use kernels::Kernels;
@@ -134,7 +134,7 @@ impl Wave {
         scene: &Scene,
         film: FilmFormat,
     ) -> Result<Plan> {
-        let plane = ViewPlane::new(&scene.camera, scene.image);
+        let plane = scene.view_plane();
         // The corner pixels are the farthest from the eye.
         let reach = plane.first_pixel.length() + plane.ray_length;
         let anchor = Anchor::new(scene, plane.eye, reach, plane.ray_length);

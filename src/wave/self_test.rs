@@ -13,9 +13,7 @@ use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{Compute, Film, FilmFormat, Pixel, Program};
 use crate::reference::Tracer;
 use crate::scene::kinds::for_each_kind;
-use crate::scene::{
-    Camera, Decay, Integration, Method, Profile, Sampling, Scene, SourceKind, ViewPlane,
-};
+use crate::scene::{Camera, Decay, Integration, Method, Profile, Sampling, Scene, SourceKind};
 use crate::threads;
 
 /// The step from one compared pixel to the next: a number that shares no divisor with the width and the lanes.
@@ -65,7 +63,7 @@ impl Wave {
     fn check(&mut self, compute: &Compute, task: Task, scene: &Scene) -> Result<()> {
         self.pace.slow_down(); // several launches for pixels, and for sources
         let found = self.draw_known(compute, task, scene)?;
-        let plane = ViewPlane::new(&scene.camera, scene.image);
+        let plane = scene.view_plane();
         let tracer = Tracer::new(scene, scene.integration.method);
         let limit = scene.integration.method.tolerance().max(LEAST_LIMIT);
         let compared: Vec<usize> = (0..found.len()).step_by(STRIDE).collect();
@@ -97,7 +95,7 @@ impl Wave {
         let plan = match task.rays {
             Rays::Pixels | Rays::Tiles => self.plan(compute, scene, task.film)?,
             Rays::Listed => {
-                let plane = ViewPlane::new(&scene.camera, size);
+                let plane = scene.view_plane();
                 let ray = |i| plane.ray(i % size.width, i / size.width);
                 let rays: Vec<_> = (0..size.pixels() as u32).map(ray).collect();
                 self.plan_rays(compute, scene, &rays)?

@@ -16,8 +16,8 @@ use std::path::PathBuf;
 use energywave::image::{DepthAlong, DepthImage, Difference, ImageSize, compare};
 use energywave::internals::{Compute, OpenClDevice, discover, with_compiler_options};
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Method, MethodKeys, Profile, Sampling, Sphere,
-    Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Measure, Method, MethodKeys, Profile, Sampling,
+    Sphere, Torus,
 };
 use energywave::{Device, DeviceType, RadianceImage, Renderer, RendererOptions, Scene, reference};
 use glam::DVec3;
@@ -78,9 +78,16 @@ pub fn renderer(lanes: u32, extra: &str) -> Renderer {
 /// Divisions of the Simpson rule where nothing else is said.
 pub const DIVISIONS: u32 = 200;
 
-/// A camera 4 from the origin, as in the paper's figures, decay alpha = beta = 0.1, no sources.
+/// The length of rays that go 5 times as far beyond the projection plane as the target is.
+pub fn far_beyond_target(camera: &Camera) -> f64 {
+    5.0 * (camera.eye.distance(camera.target) - camera.near)
+}
+
+/// A camera 4 from the origin, as in the paper's figures, light by the parameter, decay alpha = beta = 0.1, no sources.
 pub fn empty_scene(width: u32, height: u32) -> Scene {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.3, -3.5, 2.0), DVec3::ZERO));
+    scene.camera.ray_length = Some(far_beyond_target(&scene.camera));
+    scene.integration.measure = Measure::Parameter;
     scene.image = ImageSize { width, height };
     scene.integration.method = Method::simpson(DIVISIONS);
     scene.decay = Some(Decay {
@@ -95,6 +102,7 @@ pub fn sphere(center: [f64; 3], coefficient: f64) -> Sphere {
         center: center.into(),
         coefficient,
         color: DVec3::new(1.0, 0.5, 0.25),
+        profile: Profile::Inverse,
         ..Sphere::default()
     }
 }
@@ -104,6 +112,7 @@ pub fn cylinder(point: [f64; 3], direction: [f64; 3]) -> Cylinder {
         point: point.into(),
         coefficient: 2.0,
         color: DVec3::new(0.3, 0.6, 0.9),
+        profile: Profile::Inverse,
         ..Cylinder::new(direction.into())
     }
 }
@@ -116,6 +125,7 @@ pub fn beam(tip: [f64; 3], direction: [f64; 3], taper_length: Option<f64>) -> Be
         end: taper_length.map_or(BeamEnd::Cap(Some(0.9)), BeamEnd::Taper),
         sphere_coefficient: 0.3,
         color: DVec3::new(0.8, 0.3, 0.1),
+        profile: Profile::Inverse,
         ..Beam::new(direction.into())
     }
 }
@@ -126,6 +136,7 @@ pub fn torus(center: [f64; 3], axis: [f64; 3], major_radius: f64) -> Torus {
         axis: axis.into(),
         coefficient: 5.1,
         color: DVec3::new(0.2, 0.4, 1.0),
+        profile: Profile::Inverse,
         ..Torus::new(major_radius)
     }
 }
@@ -135,6 +146,7 @@ pub fn curve(points: [[f64; 3]; 3], intensity: Option<Vec<f64>>) -> Curve {
         coefficient: 5.0,
         color: DVec3::new(0.7, 0.2, 0.5),
         intensity,
+        profile: Profile::Inverse,
         ..Curve::new(points.map(DVec3::from))
     }
 }

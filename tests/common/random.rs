@@ -3,7 +3,7 @@
 use energywave::Scene;
 use energywave::image::ImageSize;
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Measure, Method, Sphere, Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Measure, Method, Profile, Sphere, Torus,
 };
 use fastrand::Rng;
 use glam::DVec3;
@@ -55,9 +55,10 @@ pub fn random_view(random: &mut Rng, size: u32) -> Scene {
             beta: spread(random, 0.02, 2.0),
         });
     }
-    if random.bool() {
-        scene.integration.measure = Measure::Length;
-    }
+    scene.integration.measure = match random.bool() {
+        true => Measure::Length,
+        false => Measure::Parameter,
+    };
     if random.u32(0..4) == 0 {
         scene.integration.softening = spread(random, 1e-3, 0.3);
     }
@@ -73,12 +74,14 @@ pub fn add_source(random: &mut Rng, kind: Kind, scene: &mut Scene) {
             center: point(random, 1.0),
             coefficient,
             color,
+            profile: Profile::Inverse,
             ..Sphere::default()
         }),
         Kind::Cylinder => scene.cylinders.push(Cylinder {
             point: point(random, 1.0),
             coefficient,
             color,
+            profile: Profile::Inverse,
             ..Cylinder::new(point(random, 1.0))
         }),
         Kind::Beam => {
@@ -96,6 +99,7 @@ pub fn add_source(random: &mut Rng, kind: Kind, scene: &mut Scene) {
                 color,
                 end,
                 sphere_coefficient,
+                profile: Profile::Inverse,
                 ..Beam::new(point(random, 1.0))
             });
         }
@@ -104,6 +108,7 @@ pub fn add_source(random: &mut Rng, kind: Kind, scene: &mut Scene) {
             axis: point(random, 1.0),
             coefficient,
             color,
+            profile: Profile::Inverse,
             ..Torus::new(spread(random, 0.1, 2.0))
         }),
         Kind::Curve => {
@@ -114,6 +119,7 @@ pub fn add_source(random: &mut Rng, kind: Kind, scene: &mut Scene) {
                 coefficient,
                 color,
                 intensity,
+                profile: Profile::Inverse,
                 ..Curve::new([0; 3].map(|_| point(random, 1.5)))
             });
         }

@@ -2,7 +2,6 @@
 
 use energywave::Scene;
 use energywave::image::ImageSize;
-use energywave::internals::ViewPlane;
 use energywave::scene::{BeamEnd, Method};
 use glam::DVec3;
 
@@ -15,6 +14,7 @@ pub const SIZE: ImageSize = ImageSize {
 pub fn view(eye: [f64; 3], target: [f64; 3]) -> Scene {
     let mut scene = super::empty_scene(SIZE.width, SIZE.height);
     (scene.camera.eye, scene.camera.target) = (eye.into(), target.into());
+    scene.camera.ray_length = Some(super::far_beyond_target(&scene.camera));
     scene.integration.method = Method::default();
     scene
 }
@@ -26,7 +26,7 @@ pub fn usual_view() -> Scene {
 /// The point that shows at a place of the image, in pixels, so far behind the projection plane as that is from the eye
 /// times `depth`.
 pub fn point_at(scene: &Scene, column: f64, row: f64, depth: f64) -> [f64; 3] {
-    let plane = ViewPlane::new(&scene.camera, scene.image);
+    let plane = scene.view_plane();
     let on_plane = plane.first_pixel + plane.column_step * column + plane.row_step * row;
     (plane.eye + on_plane * (1.0 + depth)).to_array()
 }

@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::{full_scene, lane_widths};
 use energywave::internals::pack::{self, Anchor, Sources, layout};
 use energywave::internals::{
-    self, Argument, Compute, DeviceBuffer, FilmPart, KINDS, Rule, TILE_SHARES, ViewPlane,
+    self, Argument, Compute, DeviceBuffer, FilmPart, KINDS, Rule, TILE_SHARES,
 };
 use half::f16;
 
@@ -29,7 +29,7 @@ fn marks_left(
         _ => "#include \"wave/render.cl\"\n",
     };
     let program = internals::build_text(&compute, kernel, file, &["sphere"], &options).unwrap();
-    let plane = ViewPlane::new(&scene.camera, scene.image);
+    let plane = scene.view_plane();
     let anchor = Anchor::new(&scene, plane.eye, plane.ray_length, plane.ray_length);
     let packed = Sources::new(&scene, &anchor);
     let node = |k| layout::Node {

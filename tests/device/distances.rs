@@ -84,6 +84,8 @@ fn distance_cases() -> Vec<(&'static str, Scene)> {
         let mut scene = empty();
         scene.beams.push(energywave::scene::Beam {
             tip: tip.into(),
+            profile: energywave::scene::Profile::Inverse,
+            coefficient: 1.0,
             ..energywave::scene::Beam::new(direction.into())
         });
         cases.push(("beam_distance", scene));
@@ -111,7 +113,11 @@ fn distance_cases() -> Vec<(&'static str, Scene)> {
         ([0.3, 0.2, 0.1], [0.3, 0.2, 0.1]),
     ] {
         let mut scene = empty();
-        scene.segments.push(Segment::new(from.into(), to.into()));
+        scene.segments.push(Segment {
+            profile: energywave::scene::Profile::Inverse,
+            coefficient: 1.0,
+            ..Segment::new(from.into(), to.into())
+        });
         cases.push(("segment_distance", scene));
     }
     for kind in KINDS {

@@ -5,7 +5,7 @@ use crate::common;
 use crate::common::lane_widths;
 use energywave::internals::pack;
 use energywave::internals::{
-    self, Argument, Compute, Film, FilmFormat, Pixel, Program, ViewPlane, Wave, draw_wave,
+    self, Argument, Compute, Film, FilmFormat, Pixel, Program, Wave, draw_wave,
 };
 use energywave::scene::{Method, Sampling};
 use energywave::{RendererOptions, Scene};
@@ -73,7 +73,7 @@ fn engine(compute: &Compute, lanes: u32, format: FilmFormat) -> Program {
 
 #[allow(unsafe_code)]
 fn paint(compute: &Compute, program: &Program, scene: &Scene, film: &mut Film) {
-    let view = pack::view(&ViewPlane::new(&scene.camera, scene.image), scene);
+    let view = pack::view(&scene.view_plane(), scene);
     let arguments: [(&str, &dyn Argument); 1] = [("view", &view)];
     let size = (WIDTH, HEIGHT);
     // SAFETY: the engine stores the part's pixels, as many as the film has.
@@ -82,7 +82,7 @@ fn paint(compute: &Compute, program: &Program, scene: &Scene, film: &mut Film) {
 
 /// What the second engine draws, in float64.
 fn painted(scene: &Scene) -> Vec<[f64; 3]> {
-    let plane = ViewPlane::new(&scene.camera, scene.image);
+    let plane = scene.view_plane();
     let places = (0..HEIGHT).flat_map(|row| (0..WIDTH).map(move |column| (column, row)));
     let light = |(column, row)| {
         let rise = plane.ray(column, row).span.normalize().z.abs();

@@ -118,7 +118,7 @@ fn images_of_halves_and_those_that_cannot_be_mapped_get_the_same_image() {
 fn one_sphere() -> Scene {
     let mut scene = common::empty_scene(99, 70);
     scene.integration.method = common::by(Sampling::Pixels);
-    scene.spheres.push(energywave::scene::Sphere::default());
+    scene.spheres.push(common::sphere([0.0; 3], 1.0));
     scene
 }
 

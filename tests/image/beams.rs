@@ -91,6 +91,7 @@ fn parts_add_up() {
         let plain = Beam {
             tip: DVec3::new(-0.3, 0.1, 0.2),
             profile,
+            coefficient: 1.0,
             ..Beam::new(direction())
         };
         let mut draw = |beams: &[Beam], sphere: f64| {
@@ -139,6 +140,7 @@ fn a_taper_is_between_a_line_and_a_cut() {
                 scene.beams.push(Beam {
                     end: taper_length.map_or(BeamEnd::Cap(Some(0.0)), BeamEnd::Taper),
                     profile,
+                    coefficient: 1.0,
                     ..Beam::new(direction())
                 });
             })
@@ -157,6 +159,7 @@ fn a_taper_is_between_a_line_and_a_cut() {
         let line = image(&mut renderer, exact(), |scene| {
             scene.cylinders.push(Cylinder {
                 profile,
+                coefficient: 1.0,
                 ..Cylinder::new(direction())
             });
         });

@@ -32,7 +32,7 @@ const EXACT: Method = Method::Exact {
 const WAYS: [DepthAlong; 2] = [DepthAlong::Ray, DepthAlong::Axis];
 
 fn plane_of(scene: &Scene) -> ViewPlane {
-    ViewPlane::new(&scene.camera, scene.image)
+    scene.view_plane()
 }
 
 /// The depths at which the rays of a scene end at these parameters s.

@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::random::{KINDS, Kind, add_source, random_view};
 use crate::common::{WORST_PIXEL, at_tolerance, difference, lane_widths, renderer};
 use energywave::image::ImageSize;
-use energywave::scene::{Camera, Curve, Decay, Method};
+use energywave::scene::{Camera, Curve, Decay, Measure, Method, Profile};
 use energywave::{Scene, reference};
 use glam::DVec3;
 
@@ -14,6 +14,7 @@ fn through_a_core(kind: Kind) -> Scene {
     camera.ray_length = Some(9.0);
     let mut scene = Scene::new(camera);
     scene.integration.method = Method::exact(1e-4);
+    scene.integration.measure = Measure::Parameter;
     scene.decay = Some(Decay {
         alpha: 0.2,
         beta: 0.3,
@@ -24,7 +25,7 @@ fn through_a_core(kind: Kind) -> Scene {
     };
     let white = (1.0, DVec3::ONE);
     match kind {
-        Kind::Sphere => scene.spheres.push(energywave::scene::Sphere::default()),
+        Kind::Sphere => scene.spheres.push(common::sphere([0.0; 3], 1.0)),
         Kind::Cylinder => scene
             .cylinders
             .push(common::cylinder([0.0; 3], [1.0, 0.2, 0.5])),
@@ -39,6 +40,7 @@ fn through_a_core(kind: Kind) -> Scene {
         Kind::Curve => scene.curves.push(Curve {
             coefficient: white.0,
             color: white.1,
+            profile: Profile::Inverse,
             ..Curve::new([[-1.0, 0.2, -0.5], [0.0, -0.2, 0.0], [1.0, 0.2, 0.5]].map(DVec3::from))
         }),
     }

@@ -248,7 +248,7 @@ fn decay_measure_and_softening_are_the_references() {
     let squared = check(&common::squared(&scene), "squares");
     assert!(common::difference(&squared, &plain).max > 0.1);
     let ratio = by_length.as_slice()[0] / plain.as_slice()[0];
-    let length = scene.camera.ray_length() as f32;
+    let length = scene.ray_length() as f32;
     assert!((ratio / length - 1.0).abs() < 1e-5, "{ratio} {length}");
 }
 

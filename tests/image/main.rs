@@ -6,12 +6,14 @@ mod common;
 
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
+mod defaults; // looks at a scene that names nothing
 mod depth; // compares occluded images with those of rays that are cut by hand
 mod exact; // holds the method `exact` to every tolerance
 mod figures; // draws every scene by every method in the form of the device
 mod hard_scenes; // takes the method `exact` through cores, along them, and to extreme numbers
 mod images; // bounds the worst pixel of the Simpson rule
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
+mod layers; // holds several lights of one core to as many sources
 mod parts; // draws rows, rays and changed scenes as the whole image has them
 mod rays; // compares single rays with integrals that are known to nine digits
 mod search; // draws what examples/hard_scenes has found

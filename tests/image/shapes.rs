@@ -68,11 +68,17 @@ fn shaped(mut scene: Scene, shape: Shape) -> Scene {
 /// The distance of a point from a core.
 type Distance = fn(DVec3) -> f64;
 
-/// One source of every kind whose distance is plain, and that distance.
+/// One source of every kind whose distance is plain, of coefficient 1, and that distance.
 fn plain_kinds() -> Vec<(Scene, Distance)> {
     let scene = |add: &dyn Fn(&mut Scene)| {
         let mut scene = common::empty_scene(32, 32);
         add(&mut scene);
+        macro_rules! set {
+            ($($list:ident),*) => {
+                $(scene.$list.iter_mut().for_each(|source| source.coefficient = 1.0);)*
+            };
+        }
+        set!(spheres, cylinders, beams, tori, segments);
         scene
     };
     vec![
@@ -280,8 +286,10 @@ fn sparks() -> Scene {
         let reach = 0.01 * 20.0_f64.powf(random.f64());
         scene.spheres.push(Sphere {
             center: DVec3::from([0; 3].map(|_| 2.4 * random.f64() - 1.2)),
+            profile: Profile::Inverse,
             radius: 0.2 * reach,
             reach: Some(reach),
+            coefficient: 1.0,
             ..Sphere::default()
         });
     }

@@ -148,9 +148,19 @@ fn a_damaged_image_ends_in_a_result_or_an_error() {
     );
 }
 
+/// A scene with layers and groups, which no scene has that was read.
+const PLACED_TOML: &str = "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n\
+    [[sphere]]\nlayers = [{ radius = 1, color = [1, 2, 3] }, { reach = 2 }]\n\
+    [[group]]\nscale = 2\nrotate = { axis = [0, 0, 1], angle = 9 }\nrepeat = { count = 12, axis = [0, 1, 0] }\n\
+    [[group.group]]\nrepeat = { count = 3, step = [1, 2, 3] }\n[[group.group.torus]]\nmajor_radius = 3\n\
+    [[group.group.torus.layers]]\nradius = 0.5\n";
+const PLACED_JSON: &str = r#"{"camera": {"eye": [0, -4, 2], "target": [0, 0, 0]}, "group": [{"scale": 2,
+    "rotate": {"axis": [0, 0, 1], "angle": 9}, "repeat": {"count": 12, "axis": [0, 1, 0]}, "group": [
+    {"torus": [{"major_radius": 3, "layers": [{"radius": 0.5}]}], "repeat": {"count": 3, "step": [1, 2, 3]}}]}]}"#;
+
 #[test]
 fn a_damaged_scene_ends_in_a_result_or_an_error() {
-    let scenes: Vec<(String, String)> = common::scene_files()
+    let mut scenes: Vec<(String, String)> = common::scene_files()
         .into_iter()
         .map(|path| {
             let text = fs::read_to_string(&path).unwrap();
@@ -158,6 +168,7 @@ fn a_damaged_scene_ends_in_a_result_or_an_error() {
             (text, json)
         })
         .collect();
+    scenes.push((PLACED_TOML.to_owned(), PLACED_JSON.to_owned()));
     let (mut read, mut refused) = (0, 0);
     let mut check = |bytes: Vec<u8>, parse: fn(&str) -> energywave::Result<Scene>| {
         let text = String::from_utf8_lossy(&bytes);

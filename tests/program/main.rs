@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bad_looks; // has every fault of layers named with its place
 mod bad_scenes; // has every fault of a scene file named with its place
 mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
 #[cfg(unix)] // shells, signals and the loader's environment variables
@@ -13,6 +14,7 @@ mod damaged; // changes bytes of images and scenes
 mod depths; // reads depth images of other programs
 mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
+mod groups; // has groups placed as the sources that they stand for
 mod messages; // is told what to write instead, and nothing raw or long
 #[cfg(unix)] // as cli
 mod outputs; // writes to links, pipes and devices, and reads scenes from pipes

@@ -6,8 +6,8 @@ use crate::common;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, ToneMap};
 use energywave::internals::KINDS;
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Integration, Measure, Method, Profile, Sampling,
-    Segment, Sphere, Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Integration, Layer, Measure, Method, Profile,
+    Sampling, Segment, Sphere, Torus,
 };
 use energywave::{ErrorKind, Scene};
 use fastrand::Rng;
@@ -30,6 +30,20 @@ const PROFILES: [Profile; 5] = [
     Profile::Smeared,
 ];
 
+/// None, or some that name nothing, some or all of their keys.
+fn layers(random: &mut Rng) -> Vec<Layer> {
+    let mut layer = |count: usize| Layer {
+        coefficient: (count > 0).then(|| number(random)),
+        color: (count > 1).then(|| vector(random)),
+        profile: (count > 2).then_some(Profile::InverseCube),
+        radius: (count > 2).then(|| number(random)),
+        reach: (count > 3).then(|| 1200.0 + number(random)),
+        ..Layer::default()
+    };
+    let layers: Vec<Layer> = (0..5).map(&mut layer).collect();
+    layers[..random.usize(0..6)].to_vec()
+}
+
 /// Sources of every kind and profile, beams with every end, curves with and without a series.
 fn add_sources(scene: &mut Scene, random: &mut Rng) {
     for profile in PROFILES {
@@ -41,6 +55,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             radius: number(random),
             reach: Some(1200.0 + number(random)),
             peak: None,
+            layers: layers(random),
         });
         scene.cylinders.push(Cylinder {
             point: vector(random),
@@ -51,6 +66,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             radius: number(random),
             reach: Some(1200.0 + number(random)),
             peak: None,
+            layers: layers(random),
         });
         for end in [
             BeamEnd::Cap(None),
@@ -69,6 +85,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 radius: number(random),
                 reach: None,
                 peak: None,
+                layers: layers(random),
             });
         }
         scene.segments.push(Segment {
@@ -88,6 +105,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             radius: number(random),
             reach: Some(1200.0 + number(random)),
             peak: None,
+            layers: layers(random),
         });
         for intensity in [None, Some(vec![0.0, 0.1, 1.0 / 3.0]), Some(vec![2.0; 9])] {
             scene.curves.push(Curve {
@@ -99,6 +117,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 radius: number(random),
                 reach: Some(1200.0 + number(random)),
                 peak: None,
+                layers: layers(random),
             });
         }
     }
@@ -218,7 +237,7 @@ fn a_changed_value_is_noticed() {
     let folder = tempfile::tempdir().unwrap();
     let scene = rich_scenes().swap_remove(2);
     assert!(matches!(scene.integration.method, Method::Exact { .. }));
-    let changes: [Change; 17] = [
+    let changes: [Change; 18] = [
         ("eye", |s| nudge(&mut s.camera.eye.x)),
         ("up", |s| nudge(&mut s.camera.up.z)),
         ("fov_y", |s| nudge(&mut s.camera.fov_y)),
@@ -238,6 +257,13 @@ fn a_changed_value_is_noticed() {
             s.beams[0].end = BeamEnd::Cap(Some(s.beams[0].coefficient))
         }),
         ("taper", |s| s.beams.swap(3, 7)),
+        ("layer", |s| {
+            let light = Layer {
+                radius: Some(1.0),
+                ..Layer::default()
+            };
+            s.tori[0].layers = vec![light];
+        }),
         ("torus", |s| s.tori.truncate(1)),
         ("series", |s| {
             nudge(&mut s.curves[1].intensity.as_mut().unwrap()[2])

@@ -92,6 +92,7 @@ fn verify_takes_whole_scenes_with_and_without_a_camera_by_either_measure() {
         "torus": [torus],
         "beam": [beam],
         "decay": {"alpha": 0.1, "beta": 0.2},
+        "integration": {"measure": "parameter"},
     });
     let mut seen = sources.clone();
     seen["camera"] = serde_json::json!({"eye": [5.0, 6.0, 7.0], "target": [0.0, 0.0, 0.0]});

@@ -58,6 +58,16 @@ fn warnings_have_file_line_column_and_key_and_are_told_quietly_too() {
             "write [1.0, 0.502, 0.0]",
         ),
         (
+            "[[sphere]]\n[[group]]\nrepeat = { count = 3, step = [1, 0, 0] }\n[[group.sphere]]\ncolor = [0, 0, 255]\n",
+            "8:9: group[0].sphere[0].color",
+            "write [0.0, 0.0, 1.0] (2 more sources have such colours)",
+        ),
+        (
+            "[[group]]\ntranslate = [0, -90, 40]\n[[group.sphere]]\n",
+            "6:1: group[0].sphere[0]",
+            "behind the eye",
+        ),
+        (
             "[[sphere]]\ncoefficient = 0\n",
             "4:1: sphere[0]",
             "gives no light",
@@ -68,8 +78,8 @@ fn warnings_have_file_line_column_and_key_and_are_told_quietly_too() {
             "behind the eye",
         ),
         (
-            "[[sphere]]\ncenter = [0, 90, 0]\n",
-            "4:1: sphere[0]",
+            "ray_length = 20\n[[sphere]]\ncenter = [0, 90, 0]\n",
+            "5:1: sphere[0]",
             "beyond the end of the rays",
         ),
     ] {

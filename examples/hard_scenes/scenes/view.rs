@@ -49,9 +49,10 @@ pub fn empty(dice: &mut Dice) -> Scene {
             beta: dice.spread(0.02, 2.0),
         });
     }
-    if dice.one_in(3) {
-        scene.integration.measure = Measure::Length;
-    }
+    scene.integration.measure = match dice.one_in(3) {
+        true => Measure::Length,
+        false => Measure::Parameter,
+    };
     scene
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::sphere::Point;
 use super::{Field, Parts, Sample, Source, crossing, nearest_to_line};
-use crate::scene::{Beam, Ray, SourceKind};
+use crate::scene::{Beam, Ray, Light};
 
 /// The line of a beam: dark behind the tip, or fading there over the length of a taper; the direction is a unit vector.
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ struct Cap {
 }
 
 impl Parts for Beam {
-    fn add_parts(&self, add: &mut dyn FnMut(Source)) {
+    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source)) {
         let (tip, direction) = (self.tip, self.direction.normalize());
         let taper_length = self.taper_length();
         let line = HalfLine {
@@ -31,8 +31,8 @@ impl Parts for Beam {
             taper_length,
         };
         let parts: [(Box<dyn Field>, f64); 3] = [
-            (Box::new(line), self.light().coefficient),
-            (Box::new(Cap { tip, direction }), self.cap()),
+            (Box::new(line), light.coefficient),
+            (Box::new(Cap { tip, direction }), self.cap(&light)),
             (Box::new(Point(tip)), self.sphere_coefficient),
         ];
         let lit = parts
@@ -41,8 +41,8 @@ impl Parts for Beam {
         for (field, coefficient) in lit {
             add(Source {
                 field,
-                falloff: self.light().falloff,
-                emission: self.color * coefficient,
+                falloff: light.falloff,
+                emission: light.color * coefficient,
             });
         }
     }

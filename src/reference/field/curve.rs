@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source};
-use crate::scene::{Curve, Ray, SourceKind};
+use crate::scene::{Curve, Ray, Light};
 
 /// `C(t) = C2 t^2 + C1 t + C0`, t in `[0,1]`, with its intensity series.
 #[derive(Debug, Clone)]
@@ -111,10 +111,10 @@ impl CurveField {
 }
 
 impl Parts for Curve {
-    fn add_parts(&self, add: &mut dyn FnMut(Source)) {
+    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source)) {
         add(Source::new(
             CurveField::new(self),
-            self.light(),
+            light,
         ));
     }
 }

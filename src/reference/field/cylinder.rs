@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, even, nearest_to_line};
-use crate::scene::{Cylinder, Ray, SourceKind};
+use crate::scene::{Cylinder, Ray, Light};
 
 /// A line through a point; the direction is a unit vector.
 #[derive(Debug, Clone)]
@@ -13,13 +13,13 @@ struct Line {
 }
 
 impl Parts for Cylinder {
-    fn add_parts(&self, add: &mut dyn FnMut(Source)) {
+    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source)) {
         add(Source::new(
             Line {
                 point: self.point,
                 direction: self.direction.normalize(),
             },
-            self.light(),
+            light,
         ));
     }
 }

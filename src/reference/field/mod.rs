@@ -3,17 +3,19 @@
 use glam::DVec3;
 
 use crate::scene::kinds::for_each_kind;
-use crate::scene::{Falloff, Light, Ray, Scene};
+use crate::scene::{Falloff, HasLight, Light, Ray, Scene};
 
 macro_rules! field_modules {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         $(mod $kind;)*
 
-        /// Lists every source of a scene, part by part.
+        /// Lists every source of a scene, light by light and part by part.
         pub fn sources(scene: &Scene) -> Vec<Source> {
             let mut sources = Vec::with_capacity(scene.source_count());
             $(for source in &scene.$list {
-                source.add_parts(&mut |part| sources.push(part));
+                for light in source.lights() {
+                    source.add_parts(light, &mut |part| sources.push(part));
+                }
             })*
             sources
         }
@@ -53,7 +55,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Makes a part with all of a source's light.
+    /// Makes a part with all of a light.
     fn new(field: impl Field + 'static, light: Light) -> Self {
         Self {
             field: Box::new(field),
@@ -65,8 +67,8 @@ impl Source {
 
 /// What the reference asks of every kind of source.
 trait Parts {
-    /// Calls `add` with each part of the source that glows.
-    fn add_parts(&self, add: &mut dyn FnMut(Source));
+    /// Calls `add` with each part of the source that glows with one of its lights.
+    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source));
 }
 
 /// Makes the sample of a core that is equally bright everywhere.

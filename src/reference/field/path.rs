@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, crossing, even};
-use crate::scene::{LightPath, PathPiece, Ray, SourceKind};
+use crate::scene::{Light, LightPath, PathPiece, Ray};
 
 /// The pieces, each with a ball around it.
 #[derive(Debug, Clone)]
@@ -12,13 +12,13 @@ struct Chain {
 }
 
 impl Parts for LightPath {
-    fn add_parts(&self, add: &mut dyn FnMut(Source)) {
+    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source)) {
         let with_ball = |piece: PathPiece| {
             let (center, radius) = piece.ball();
             (piece, center, radius)
         };
         let pieces = self.pieces().into_iter().map(with_ball).collect();
-        add(Source::new(Chain { pieces }, self.light()));
+        add(Source::new(Chain { pieces }, light));
     }
 }
 

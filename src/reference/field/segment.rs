@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, crossing, even, nearest_to_line};
-use crate::scene::{Ray, Segment, SourceKind};
+use crate::scene::{Ray, Segment, Light};
 
 /// The points from one end to the other; the span is their difference.
 #[derive(Debug, Clone)]
@@ -13,13 +13,13 @@ struct FiniteLine {
 }
 
 impl Parts for Segment {
-    fn add_parts(&self, add: &mut dyn FnMut(Source)) {
+    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source)) {
         add(Source::new(
             FiniteLine {
                 from: self.from,
                 span: self.to - self.from,
             },
-            self.light(),
+            light,
         ));
     }
 }

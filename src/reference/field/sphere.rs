@@ -3,17 +3,17 @@
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, even};
-use crate::scene::{Ray, Sphere, SourceKind};
+use crate::scene::{Ray, Sphere, Light};
 
 /// A point.
 #[derive(Debug, Clone)]
 pub(super) struct Point(pub DVec3);
 
 impl Parts for Sphere {
-    fn add_parts(&self, add: &mut dyn FnMut(Source)) {
+    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source)) {
         add(Source::new(
             Point(self.center),
-            self.light(),
+            light,
         ));
     }
 }

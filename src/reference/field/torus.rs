@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Field, Parts, Sample, Source, even};
-use crate::scene::{Ray, Torus, SourceKind};
+use crate::scene::{Ray, Torus, Light};
 
 /// The circle of a ring; the axis is a unit vector.
 #[derive(Debug, Clone)]
@@ -14,14 +14,14 @@ struct Circle {
 }
 
 impl Parts for Torus {
-    fn add_parts(&self, add: &mut dyn FnMut(Source)) {
+    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source)) {
         add(Source::new(
             Circle {
                 center: self.center,
                 axis: self.axis.normalize(),
                 radius: self.major_radius,
             },
-            self.light(),
+            light,
         ));
     }
 }

@@ -47,9 +47,7 @@ pub(super) fn read(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Read
         key: String::new(),
         message: without_position(&error.to_string()).to_owned(),
     })?;
-    let scene = file.into_scene(folder, adjust)?;
-    let warnings = scene.warnings();
-    Ok((scene, warnings))
+    file.into_scene(folder, adjust)
 }
 
 /// Writes a scene.

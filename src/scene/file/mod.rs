@@ -1,6 +1,8 @@
 //! Reads a scene from TOML or JSON; every fault is reported with file, line, column and key.
 
 mod depth;
+mod display;
+mod groups;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
@@ -17,12 +19,15 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::integration::{check_divisions, check_tolerance};
-use super::kinds::{KIND_COUNT, for_each_kind};
+use super::kinds::for_each_kind;
 use super::values::Fault;
 use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
 use depth::DepthTable;
+use display::DisplayTable;
+use groups::{GroupTable, Groups};
+use scan::UNIT_COUNT;
 
 /// Changes a scene between its reading and its check.
 type Adjust<'a> = &'a mut dyn FnMut(&mut Scene, &MethodKeys) -> Result<()>;
@@ -44,10 +49,12 @@ macro_rules! define_scene_file {
             #[serde(default)]
             integration: IntegrationTable,
             #[serde(default)]
-            display: Display,
+            display: DisplayTable,
             #[serde(default, skip_serializing_if = "Option::is_none")]
             depth: Option<DepthTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
+            #[serde(default, skip_serializing)]
+            group: Vec<GroupTable>,
         }
 
         /// A run of sources of a file.
@@ -55,6 +62,8 @@ macro_rules! define_scene_file {
         #[serde(deny_unknown_fields)]
         struct SourceTables {
             $(#[serde(default)] $kind: Vec<$Type>,)*
+            #[serde(default)]
+            group: Vec<GroupTable>,
         }
 
         impl SceneFile {
@@ -65,14 +74,14 @@ macro_rules! define_scene_file {
                     image: self.image,
                     decay: self.decay,
                     integration: self.integration.integration(),
-                    display: self.display,
+                    display: self.display.display(),
                     depth: None,
                     $($list: std::mem::take(&mut self.$kind),)*
                 }
             }
 
-            /// Makes room for so many sources of each kind, in the order of the table.
-            fn reserve(&mut self, counts: [usize; KIND_COUNT]) {
+            /// Makes room for so many sources of each kind, in the order of the table, and groups.
+            fn reserve(&mut self, counts: [usize; UNIT_COUNT]) {
                 let mut counts = counts.into_iter();
                 $(
                     let count = counts.next().unwrap_or(0);
@@ -81,6 +90,8 @@ macro_rules! define_scene_file {
                         self.$kind.reserve_exact(more);
                     }
                 )*
+                let count = counts.next().unwrap_or(0);
+                self.group.reserve_exact(count.saturating_sub(self.group.len()));
             }
 
             /// Adds the sources of a run of tables.
@@ -90,6 +101,7 @@ macro_rules! define_scene_file {
                         self.$kind.extend(run.$kind);
                     }
                 )*
+                self.group.extend(run.group);
             }
 
             /// Makes a file's scene as it is written.
@@ -99,9 +111,10 @@ macro_rules! define_scene_file {
                     image: scene.image,
                     decay: scene.decay,
                     integration: IntegrationTable::of(&scene.integration),
-                    display: scene.display,
+                    display: DisplayTable::of(&scene.display),
                     depth,
                     $($kind: scene.$list.clone(),)*
+                    group: Vec::new(),
                 }
             }
         }
@@ -227,18 +240,21 @@ impl IntegrationTable {
 
 impl SceneFile {
     /// Checks the scene, lets `adjust` change it, reads a depth image unless it has given one, and checks it again.
-    fn into_scene(mut self, folder: &Path, adjust: Adjust<'_>) -> Result<Scene> {
+    fn into_scene(mut self, folder: &Path, adjust: Adjust<'_>) -> Result<Read> {
         let mut scene = self.scene();
         self.integration
             .check()
             .map_err(|fault| fault.of("integration"))?;
-        scene.check()?;
+        let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
+        groups.check(&scene)?;
+        self.display.fit_exposure(&mut scene);
         adjust(&mut scene, &self.integration.keys())?;
         if let (Some(depth), None) = (&self.depth, &scene.depth) {
             scene.depth = Some(depth.open(folder)?);
         }
-        scene.check()?;
-        Ok(scene)
+        groups.check(&scene)?;
+        let warnings = groups.warnings(&scene);
+        Ok((scene, warnings))
     }
 }
 

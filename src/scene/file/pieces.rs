@@ -1,10 +1,10 @@
 //! A TOML text in pieces that are read one after another: whole, it takes fifty times its size while it is read. The
-//! first piece is the text without most of its sources, each of the others a run of `[[KIND]]` tables.
+//! first piece is the text without most of its sources and groups, each of the others a run of `[[KIND]]` and
+//! `[[group]]` tables.
 
 use std::borrow::Cow;
 
-use super::scan::Headers;
-use crate::scene::kinds::{KIND_COUNT, KINDS};
+use super::scan::{Headers, UNIT_COUNT, UNITS};
 
 /// A text of at most this many bytes is one piece, and so is the least run of tables that is cut off.
 pub(super) const WHOLE: usize = 1 << 20;
@@ -16,8 +16,8 @@ pub(super) struct Piece<'a> {
     pub text: Cow<'a, str>,
     /// Where its parts begin: in the piece, and in the whole text.
     parts: Vec<(usize, usize)>,
-    /// How many sources of each kind stand before its own.
-    pub before: [usize; KIND_COUNT],
+    /// How many sources of each kind, and groups, stand before its own.
+    pub before: [usize; UNIT_COUNT],
 }
 
 impl<'a> Piece<'a> {
@@ -25,7 +25,7 @@ impl<'a> Piece<'a> {
         Self {
             text: Cow::Borrowed(text),
             parts: vec![(0, 0)],
-            before: [0; KIND_COUNT],
+            before: [0; UNIT_COUNT],
         }
     }
 
@@ -39,18 +39,18 @@ impl<'a> Piece<'a> {
     pub(super) fn key(&self, inside: &str) -> String {
         match source_key(inside) {
             Some((kind, index, rest)) => {
-                format!("{}[{}]{rest}", KINDS[kind], index + self.before[kind])
+                format!("{}[{}]{rest}", UNITS[kind], index + self.before[kind])
             }
             None => inside.to_owned(),
         }
     }
 }
 
-/// Takes the key of a source apart: the place of its kind, its index, and the rest.
+/// Takes the key of a source or a group apart: the place of its kind, its index, and the rest.
 fn source_key(key: &str) -> Option<(usize, usize, &str)> {
     let (kind, rest) = key.split_once('[')?;
     let (index, rest) = rest.split_once(']')?;
-    let kind = KINDS.iter().position(|it| *it == kind)?;
+    let kind = UNITS.iter().position(|it| *it == kind)?;
     Some((kind, index.parse().ok()?, rest))
 }
 
@@ -58,10 +58,10 @@ fn source_key(key: &str) -> Option<(usize, usize, &str)> {
 #[derive(Debug)]
 pub(super) struct Pieces<'a> {
     pub list: Vec<Piece<'a>>,
-    /// How many tables of each kind there are; 0 in a text that is one piece.
-    pub counts: [usize; KIND_COUNT],
+    /// How many tables of each kind, and groups, there are; 0 in a text that is one piece.
+    pub counts: [usize; UNIT_COUNT],
     /// The kinds all of whose tables stand in the first piece.
-    is_whole: [bool; KIND_COUNT],
+    is_whole: [bool; UNIT_COUNT],
 }
 
 impl<'a> Pieces<'a> {
@@ -70,8 +70,8 @@ impl<'a> Pieces<'a> {
         if text.len() <= whole {
             return Self {
                 list: vec![Piece::whole(text)],
-                counts: [0; KIND_COUNT],
-                is_whole: [true; KIND_COUNT],
+                counts: [0; UNIT_COUNT],
+                is_whole: [true; UNIT_COUNT],
             };
         }
         let Headers {
@@ -81,12 +81,12 @@ impl<'a> Pieces<'a> {
         let mut first = Piece {
             text: Cow::Owned(String::new()),
             parts: Vec::new(),
-            before: [0; KIND_COUNT],
+            before: [0; UNIT_COUNT],
         };
         let mut runs: Vec<Piece<'a>> = Vec::new();
-        let mut counts = [0; KIND_COUNT];
-        let mut open: Option<(usize, [usize; KIND_COUNT])> = None;
-        let mut close = |open: &mut Option<(usize, [usize; KIND_COUNT])>, end: usize| {
+        let mut counts = [0; UNIT_COUNT];
+        let mut open: Option<(usize, [usize; UNIT_COUNT])> = None;
+        let mut close = |open: &mut Option<(usize, [usize; UNIT_COUNT])>, end: usize| {
             runs.extend(open.take().map(|(begin, before)| Piece {
                 text: Cow::Borrowed(&text[begin..end]),
                 parts: vec![(0, begin)],
@@ -139,6 +139,6 @@ impl<'a> Pieces<'a> {
         let piece = runs.rev().find(|piece| piece.before[kind] <= index);
         let piece = piece.unwrap_or(first);
         let inside = index.saturating_sub(piece.before[kind]);
-        (piece, format!("{}[{inside}]{rest}", KINDS[kind]))
+        (piece, format!("{}[{inside}]{rest}", UNITS[kind]))
     }
 }

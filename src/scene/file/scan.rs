@@ -7,23 +7,36 @@ use std::ops::Range;
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-use crate::scene::kinds::KINDS;
+use crate::scene::kinds::{KIND_COUNT, KINDS};
+
+/// What stands in tables of which there may be very many: sources of all kinds, and groups.
+pub(super) const UNIT_COUNT: usize = KIND_COUNT + 1;
+pub(super) const UNITS: [&str; UNIT_COUNT] = {
+    let mut units = ["group"; UNIT_COUNT];
+    let mut kind = 0;
+    while kind < KIND_COUNT {
+        units[kind] = KINDS[kind];
+        kind += 1;
+    }
+    units
+};
 
 /// A table's header, such as `[camera]` or `[[torus]]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Header {
     /// Where its line begins.
     pub at: usize,
-    /// The kind of source, by its place in the table of kinds, if it is `[[KIND]]`.
+    /// The kind of source, by its place in the table of kinds, or the group, if it is `[[KIND]]` or `[[group]]`.
     pub kind: Option<usize>,
 }
 
 /// The headers of a text, in order, and which kinds of source it also names in other ways than by `[[KIND]]`, such as
-/// by `[torus]` or `[[torus.x]]`.
+/// by `[torus]`. Tables within one of a kind, such as `[[torus.layers]]` behind `[[torus]]`, belong to it and are not
+/// listed.
 #[derive(Debug, Default)]
 pub(super) struct Headers {
     pub list: Vec<Header>,
-    pub is_named_otherwise: [bool; KINDS.len()],
+    pub is_named_otherwise: [bool; UNIT_COUNT],
 }
 
 impl Headers {
@@ -31,29 +44,33 @@ impl Headers {
         let mut found = Self::default();
         walk(text, &mut |part, range| {
             if part == Part::Header {
-                let kind = found.kind_of(&text[range.clone()]);
-                found.list.push(Header {
-                    at: range.start,
-                    kind,
-                });
+                found.add(range.start, &text[range]);
             }
             true
         });
         found
     }
 
-    /// Returns the kind that a header such as `[[torus]]` names, and notes those that it names otherwise.
-    fn kind_of(&mut self, header: &str) -> Option<usize> {
+    /// Adds a header, and notes what it names in another way than its kind's.
+    fn add(&mut self, at: usize, header: &str) {
         let inside = |open, close| Some(header.strip_prefix(open)?.strip_suffix(close)?.trim());
-        let plain = inside("[[", "]]").and_then(|name| KINDS.iter().position(|it| *it == name));
+        let plain = inside("[[", "]]").and_then(|name| UNITS.iter().position(|it| *it == name));
         if plain.is_none() {
-            let first = header.split('.').next().unwrap_or_default();
+            let (first, is_within) = match header.split_once('.') {
+                Some((first, _)) => (first, true),
+                None => (header, false),
+            };
             let first = first.trim_matches(['[', ']', '"', '\'', ' ', '\t']);
-            for (kind, is_named) in KINDS.iter().zip(&mut self.is_named_otherwise) {
-                *is_named |= header.contains('\\') || first == *kind;
+            let unit = UNITS.iter().position(|it| *it == first);
+            let last = self.list.last().and_then(|header| header.kind);
+            if unit.is_some() && is_within && last == unit && !header.contains('\\') {
+                return;
+            }
+            for (index, is_named) in self.is_named_otherwise.iter_mut().enumerate() {
+                *is_named |= header.contains('\\') || unit == Some(index);
             }
         }
-        plain
+        self.list.push(Header { at, kind: plain });
     }
 }
 
@@ -70,15 +87,20 @@ pub(super) fn key_at(text: &str, place: usize) -> String {
         let raw = &text[range];
         match part {
             Part::Header => {
-                let name = unquoted(raw.trim_matches(['[', ']', ' ', '\t']));
-                table = match raw.starts_with("[[") {
-                    true => {
-                        let count = counts.entry(name.clone()).or_default();
-                        *count += 1;
-                        format!("{name}[{}]", *count - 1)
+                let names: Vec<&str> = raw.trim_matches(['[', ']', ' ', '\t']).split('.').collect();
+                table.clear();
+                for (index, name) in names.iter().enumerate() {
+                    let dot = if index > 0 { "." } else { "" };
+                    table += &format!("{dot}{}", unquoted(name.trim()));
+                    let is_new = index + 1 == names.len() && raw.starts_with("[[");
+                    if is_new {
+                        *counts.entry(table.clone()).or_default() += 1;
                     }
-                    false => name,
-                };
+                    // A name on the way stands for the last of its tables.
+                    if let Some(count) = counts.get(&table) {
+                        table += &format!("[{}]", count - 1);
+                    }
+                }
                 key.clear();
             }
             Part::Key => key = unquoted(raw.trim()),
@@ -229,7 +251,7 @@ b = { c = [ 1 ] }
             headers.list.iter().map(|it| it.kind).collect::<Vec<_>>(),
             [None, torus, torus]
         );
-        assert_eq!(headers.is_named_otherwise, [false; KINDS.len()]);
+        assert_eq!(headers.is_named_otherwise, [false; UNIT_COUNT]);
         let named = |text: &str| {
             Headers::of(text)
                 .is_named_otherwise
@@ -259,8 +281,32 @@ b = { c = [ 1 ] }
                 named("['torus'.x]"),
                 named("[\"camera\"]")
             ),
-            (KINDS.len(), 1, 0)
+            (UNIT_COUNT, 1, 0)
         );
+    }
+
+    #[test]
+    fn tables_within_a_source_or_a_group_belong_to_it() {
+        let found = |text: &str| {
+            let headers = Headers::of(text);
+            let named = headers.is_named_otherwise.iter().filter(|it| **it).count();
+            (headers.list.len(), named)
+        };
+        assert_eq!(
+            found("[[torus]]\n[[torus.layers]]\n[torus . x]\n[[torus]]"),
+            (2, 0)
+        );
+        assert_eq!(
+            found("[[group]]\n[group.rotate]\n[[group.torus]]\n[[torus]]"),
+            (2, 0)
+        );
+        assert_eq!(found("[[torus]]\n[[sphere]]\n[[torus.layers]]"), (3, 1));
+        assert_eq!(found("[[group]]\n[camera]\n[[group.torus]]"), (3, 1));
+        assert_eq!(found("[[group]]\n[group]"), (2, 1));
+        let text = "[[group]]\n[[group]]\n[[group.torus]]\n[[group.torus]]\naxis = .5\n[group.rotate]\nangle = .6\n";
+        let at = |words: &str| key_at(text, text.find(words).unwrap());
+        assert_eq!(at(".5"), "group[1].torus[1].axis");
+        assert_eq!(at(".6"), "group[1].rotate.angle");
     }
 
     #[test]

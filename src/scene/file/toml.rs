@@ -28,14 +28,13 @@ pub(super) fn read(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Read
         fault.position = Some(locate(text, &pieces, &fault.key));
         fault
     };
-    let scene = file
+    let (scene, warnings) = file
         .into_scene(folder, adjust)
         .map_err(|error| match error {
             Error::Scene(fault) => placed(fault).into(),
             other => other,
         })?;
-    let warnings = scene.warnings().into_iter().map(placed).collect();
-    Ok((scene, warnings))
+    Ok((scene, warnings.into_iter().map(placed).collect()))
 }
 
 /// Reads the pieces one after another. Of several faults it gives the first.
@@ -167,7 +166,7 @@ mod tests {
             let pieces = Pieces::of(text, whole, 1);
             let file = read_pieces(text, &pieces).map_err(|error| error.to_string())?;
             let read = file.into_scene(Path::new(""), &mut |_, _| Ok(()));
-            read.map_err(|error| match error {
+            read.map(|(scene, _)| scene).map_err(|error| match error {
                 Error::Scene(fault) => {
                     let place = locate(text, &pieces, &fault.key);
                     format!("{place:?} {}", Error::Scene(fault))
@@ -181,25 +180,41 @@ mod tests {
     fn a_scene_read_in_pieces_is_the_one_that_is_read_whole() {
         let spheres = "[[sphere]]\ncenter = [1, 2, 3]\n[[torus]]\nmajor_radius = 1\n".repeat(3);
         let curve = "[[curve]]\ncontrol_points = [[0,0,0],\n  [1,1,1], # [[sphere]]\n [2,0,1]]\n";
+        let group = "[[group]]\n[group.repeat]\ncount = 2\nstep = [1, 0, 0]\n[[group.curve]]\n\
+            control_points = [[0,0,0], [1,1,1], [2,0,1]]\n[[group.curve.layers]]\nradius = 1\n\
+            [[curve]]\ncontrol_points = [[0,0,0], [1,1,1], [2,0,1]]\n[[curve.layers]]\nradius = 2\n";
         let text = format!(
-            "{HEAD}{spheres}[display]\nexposure = 2\n{curve}{spheres}{curve}[decay]\nalpha=1\nbeta=1"
+            "{HEAD}{spheres}[display]\nexposure = 2\n{curve}{spheres}{group}{group}{curve}[decay]\nalpha=1\nbeta=1"
         );
         let [whole, cut] = both_ways(&text);
         let (whole, cut) = (whole.unwrap(), cut.unwrap());
         assert_eq!(whole, cut);
         assert_eq!(
             (cut.spheres.len(), cut.tori.len(), cut.curves.len()),
-            (6, 6, 2)
+            (6, 6, 8)
         );
         let pieces = Pieces::of(&text, 0, 1);
-        assert_eq!(pieces.list.len(), 1 + 6 + 6 + 2 - 3);
-        assert_eq!(Pieces::of(&text, 0, 1 << 20).list.len(), 3);
+        assert_eq!(pieces.list.len(), 1 + 6 + 6 + 4 + 2 - 4);
+        assert_eq!(Pieces::of(&text, 0, 1 << 20).list.len(), 4);
     }
 
     #[test]
     fn a_fault_is_told_alike_in_whatever_piece_it_stands() {
-        let good = "[[sphere]]\ncenter = [1, 2, 3]\n[[torus]]\nmajor_radius = 1\n";
+        let good = "[[sphere]]\ncenter = [1, 2, 3]\n[[torus]]\nmajor_radius = 1\n\
+            [[group]]\n[[group.torus]]\nmajor_radius = 2\n[[group]]\n";
         for fault in [
+            "[[group]]\nzoom = 1\n",
+            "[[group]]\n[[group.torus]]\nmajor_radius = -1\n",
+            "[[group]]\n[[group.sphere]]\n[[group.sphere.layers]]\n[[group.sphere.layers]]\nradius = .5\n",
+            "[[group.torus]]\nmajor_radius = -1\n",
+            "[group.x]\ny = 1\n",
+            "[[group.torus.layers]]\nradius = -1\n",
+            "[[group]]\nscale = 0\n",
+            "[[group]]\nscale = 1e8\n[[group.torus]]\nmajor_radius = 20\n",
+            "[group]\nscale = 1\n",
+            "[[torus]]\nmajor_radius = 1\n[torus.layers]\nradius = 1\n",
+            "[[torus]]\nmajor_radius = 1\n[[sphere]]\n[[torus.layers]]\nradius = -1\n",
+            "[[torus]]\nmajor_radius = 1\n[[torus.layers]]\nradius = -1\n",
             "[[sphere]]\nzoom = 1\n",
             "[[sphere]]\ncenter = [0, .5, 0]\n",
             "[[sphere]]\ncoefficient = 0,5\n",

@@ -1,7 +1,7 @@
 //! Puts the words of the readers of TOML and JSON into those of a scene's author.
 
 use super::numbers::{is_whole, meant};
-use crate::scene::kinds::KINDS;
+use super::scan::UNITS;
 use crate::shown::shown;
 
 /// The language of a scene file.
@@ -31,10 +31,23 @@ pub(super) fn plain(language: Language, key: String, message: &str) -> (String, 
     {
         return (table.to_owned(), one_only(language, table));
     }
-    let is_kind = KINDS.contains(&key.as_str());
-    if is_kind && message.contains("invalid type") && message.ends_with("expected a sequence") {
-        let words = several(language, &key);
+    let last = key.rsplit('.').next().unwrap_or_default();
+    let is_unit = UNITS.contains(&last);
+    if is_unit && message.contains("invalid type") && message.ends_with("expected a sequence") {
+        let words = several(language, &key, last);
         return (key, words);
+    }
+    if key.ends_with(".layers") && message.ends_with("expected a sequence") {
+        let words = match language {
+            Language::Toml => {
+                "there may be several: write a list of them, also of one: layers = [{ }]"
+            }
+            #[cfg(feature = "json")]
+            Language::Json => {
+                "there may be several: write a list of them, also of one: \"layers\": [{ }]"
+            }
+        };
+        return (key, words.to_owned());
     }
     let (found, expected) = match message.rsplit_once(", expected ") {
         Some((found, expected)) => (found, expected),
@@ -56,15 +69,26 @@ pub(super) fn plain(language: Language, key: String, message: &str) -> (String, 
     )
 }
 
-/// Says how several sources of a kind are written.
-fn several(language: Language, kind: &str) -> String {
+/// Says how several sources of a kind, or groups, are written; `name` is the last part of their key.
+fn several(language: Language, key: &str, name: &str) -> String {
     match language {
-        Language::Toml => format!("there may be several: write double brackets, [[{kind}]]"),
+        Language::Toml => {
+            let table = without_indices(key);
+            format!("there may be several: write double brackets, [[{table}]]")
+        }
         #[cfg(feature = "json")]
         Language::Json => {
-            format!("there may be several: write a list of them, also of one: \"{kind}\": [{{ }}]")
+            format!("there may be several: write a list of them, also of one: \"{name}\": [{{ }}]")
         }
     }
+}
+
+/// Returns a key as a TOML header names it, such as `group.torus` for `group[3].torus`.
+fn without_indices(key: &str) -> String {
+    let names = key
+        .split('.')
+        .map(|name| name.split('[').next().unwrap_or(name));
+    names.collect::<Vec<_>>().join(".")
 }
 
 /// Says how a table is written of which there is one.

@@ -3,36 +3,25 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, HasLight, Light, Placement, Profile, SourceKind, source, source_struct};
 use crate::scene::values::{Checked, direction, finite, named, positive, read_vector, vector};
 
-/// A half-line of light (Abe, Watanabe 2010, eq. 6, 11, 12); `1/d^2` for `1/d` by its [`Profile`]. Ahead of the plane
-/// through its tip M, perpendicular to its direction, `1/d` with d the distance to the line; behind it what its
-/// [`BeamEnd`] says.
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
-#[serde(try_from = "BeamTable", into = "BeamTable")]
-pub struct Beam {
-    /// The point at which it begins, M.
-    pub tip: DVec3,
-    /// Where it goes, of any length but zero.
-    pub direction: DVec3,
-    /// The energy coefficient of the line, b.
-    pub coefficient: f64,
-    /// Linear RGB.
-    pub color: DVec3,
-    /// What glows behind the tip.
-    pub end: BeamEnd,
-    /// The coefficient of a further sphere around M, everywhere (2010, eq. 12: a).
-    pub sphere_coefficient: f64,
-    /// How the fields fall off.
-    pub profile: Profile,
-    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
-    pub radius: f64,
-    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
-    pub reach: Option<f64>,
-    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
-    /// It needs a radius, and where the light of the profile has no end, a reach.
-    pub peak: Option<f64>,
+source_struct! {
+    /// A half-line of light (Abe, Watanabe 2010, eq. 6, 11, 12); `1/d^2` for `1/d` by its [`Profile`]. Ahead of the
+    /// plane through its tip M, perpendicular to its direction, `1/d` with d the distance to the line; behind it what
+    /// its [`BeamEnd`] says.
+    #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+    #[serde(try_from = "BeamTable", into = "BeamTable")]
+    pub struct Beam {
+        /// The point at which it begins, M.
+        pub tip: DVec3,
+        /// Where it goes, of any length but zero.
+        pub direction: DVec3,
+        /// What glows behind the tip.
+        pub end: BeamEnd,
+        /// The coefficient of a further sphere around M, everywhere (2010, eq. 12: a).
+        pub sphere_coefficient: f64,
+    }
 }
 
 /// What glows behind the tip of a beam. In files `cap_coefficient` or `taper_length`, or neither for a cap as bright as
@@ -50,24 +39,18 @@ impl Beam {
     /// Makes a white beam from the origin.
     #[must_use]
     pub fn new(direction: DVec3) -> Self {
-        Self {
+        source!(Self {
             tip: DVec3::ZERO,
             direction,
-            coefficient: one(),
-            color: white(),
             end: BeamEnd::Cap(None),
             sphere_coefficient: 0.0,
-            profile: Profile::default(),
-            radius: 0.0,
-            reach: None,
-            peak: None,
-        }
+        })
     }
 
-    /// Returns the coefficient of the sphere behind the tip; 0 where there is a taper instead.
-    pub(crate) fn cap(&self) -> f64 {
+    /// Returns the coefficient of the sphere behind the tip, for one of its lights; 0 where there is a taper instead.
+    pub(crate) fn cap(&self, light: &Light) -> f64 {
         match self.end {
-            BeamEnd::Cap(coefficient) => coefficient.unwrap_or(self.light().coefficient),
+            BeamEnd::Cap(coefficient) => coefficient.unwrap_or(light.coefficient),
             BeamEnd::Taper(_) => 0.0,
         }
     }
@@ -91,32 +74,25 @@ impl SourceKind for Beam {
             BeamEnd::Cap(None) => {}
         }
         finite("sphere_coefficient", self.sphere_coefficient)?;
-        brightness.check_light(self.light(), self.peak, 1.0)?;
-        let line = self.light().coefficient.abs().max(self.cap().abs());
-        let strongest = line + self.sphere_coefficient.abs();
-        let strongest = Light {
-            coefficient: strongest,
-            ..self.light()
-        };
-        brightness.check_light(strongest, self.peak, 1.0)
-    }
-
-    fn light(&self) -> Light {
-        let falloff = Falloff {
-            profile: self.profile,
-            radius: self.radius,
-            reach: self.reach,
-        };
-        Light {
-            coefficient: falloff.coefficient(self.coefficient, self.peak),
-            color: self.color,
-            falloff,
-        }
+        self.shared().check(brightness, &|light| {
+            let line = light.coefficient.abs().max(self.cap(light).abs());
+            line + self.sphere_coefficient.abs()
+        })
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
-        for coefficient in [self.light().coefficient, self.cap(), self.sphere_coefficient] {
-            add(coefficient * self.color);
+        for light in self.lights() {
+            for coefficient in [light.coefficient, self.cap(&light), self.sphere_coefficient] {
+                add(coefficient * light.color);
+            }
+        }
+    }
+
+    fn move_core(&mut self, place: &Placement) {
+        self.tip = place.point(self.tip);
+        self.direction = place.direction(self.direction);
+        if let BeamEnd::Taper(length) = &mut self.end {
+            *length *= place.scale;
         }
     }
 
@@ -140,32 +116,22 @@ impl SourceKind for Beam {
     }
 }
 
-/// A beam as a file describes it.
-#[derive(Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct BeamTable {
-    #[serde(default, deserialize_with = "read_vector")]
-    tip: DVec3,
-    #[serde(deserialize_with = "read_vector")]
-    direction: DVec3,
-    #[serde(default = "one")]
-    coefficient: f64,
-    #[serde(default = "white", deserialize_with = "read_vector")]
-    color: DVec3,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    cap_coefficient: Option<f64>,
-    #[serde(default)]
-    sphere_coefficient: f64,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    taper_length: Option<f64>,
-    #[serde(default)]
-    profile: Profile,
-    #[serde(default)]
-    radius: f64,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    reach: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    peak: Option<f64>,
+source_struct! {
+    /// A beam as a file describes it.
+    #[derive(Deserialize, Serialize)]
+    #[serde(deny_unknown_fields)]
+    struct BeamTable {
+        #[serde(default, deserialize_with = "read_vector")]
+        tip: DVec3,
+        #[serde(deserialize_with = "read_vector")]
+        direction: DVec3,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        cap_coefficient: Option<f64>,
+        #[serde(default)]
+        sphere_coefficient: f64,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        taper_length: Option<f64>,
+    }
 }
 
 impl TryFrom<BeamTable> for Beam {
@@ -182,38 +148,26 @@ impl TryFrom<BeamTable> for Beam {
             (None, Some(length)) => BeamEnd::Taper(length),
             (cap, None) => BeamEnd::Cap(cap),
         };
-        Ok(Self {
+        Ok(source!(Self {
             tip: table.tip,
             direction: table.direction,
-            coefficient: table.coefficient,
-            color: table.color,
             end,
             sphere_coefficient: table.sphere_coefficient,
-            profile: table.profile,
-            radius: table.radius,
-            reach: table.reach,
-            peak: table.peak,
-        })
+        } like table.shared()))
     }
 }
 
 impl From<Beam> for BeamTable {
     fn from(beam: Beam) -> Self {
-        Self {
+        source!(Self {
             tip: beam.tip,
             direction: beam.direction,
-            coefficient: beam.coefficient,
-            color: beam.color,
             cap_coefficient: match beam.end {
                 BeamEnd::Cap(coefficient) => coefficient,
                 BeamEnd::Taper(_) => None,
             },
             sphere_coefficient: beam.sphere_coefficient,
             taper_length: beam.taper_length(),
-            profile: beam.profile,
-            radius: beam.radius,
-            reach: beam.reach,
-            peak: beam.peak,
-        }
+        } like beam.shared())
     }
 }

@@ -3,56 +3,33 @@
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, item, one, white};
-use crate::scene::values::{Checked, Fault, finite, read_vector, read_vectors, vector};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, item, source, source_struct};
+use crate::scene::values::{Checked, Fault, finite, read_vectors, vector};
 
-/// A quadratic Bezier curve of light: `S(t*)/d`, or by its [`Profile`] `S(t*)/d^2`, d the distance to its nearest point
-/// `C(t*)`, `S(t*)` the local intensity there (2015, eq. 8-17).
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct Curve {
-    /// Bezier control points. They may be collinear or coincide.
-    #[serde(deserialize_with = "three_points")]
-    pub control_points: [DVec3; 3],
-    /// The paper's energy coefficient.
-    #[serde(default = "one")]
-    pub coefficient: f64,
-    /// Linear RGB.
-    #[serde(default = "white", deserialize_with = "read_vector")]
-    pub color: DVec3,
-    /// The local-intensity series W: weights of a clamped uniform quadratic B-spline over the curve's parameter, at
-    /// least 3; `None`: 1 everywhere.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub intensity: Option<Vec<f64>>,
-    /// How the field falls off.
-    #[serde(default)]
-    pub profile: Profile,
-    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
-    #[serde(default)]
-    pub radius: f64,
-    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reach: Option<f64>,
-    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
-    /// It needs a radius, and where the light of the profile has no end, a reach.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak: Option<f64>,
+source_struct! {
+    /// A quadratic Bezier curve of light: `S(t*)/d`, or by its [`Profile`] `S(t*)/d^2`, d the distance to its nearest
+    /// point `C(t*)`, `S(t*)` the local intensity there (2015, eq. 8-17).
+    #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Curve {
+        /// Bezier control points. They may be collinear or coincide.
+        #[serde(deserialize_with = "three_points")]
+        pub control_points: [DVec3; 3],
+        /// The local-intensity series W: weights of a clamped uniform quadratic B-spline over the curve's parameter, at
+        /// least 3; `None`: 1 everywhere.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub intensity: Option<Vec<f64>>,
+    }
 }
 
 impl Curve {
     /// Makes a white curve of even intensity.
     #[must_use]
     pub fn new(control_points: [DVec3; 3]) -> Self {
-        Self {
+        source!(Self {
             control_points,
-            coefficient: one(),
-            color: white(),
             intensity: None,
-            profile: Profile::default(),
-            radius: 0.0,
-            reach: None,
-            peak: None,
-        }
+        })
     }
 }
 
@@ -63,7 +40,8 @@ impl SourceKind for Curve {
         }
         let series = self.intensity.iter().flatten();
         let strongest = series.fold(1.0_f64, |most, value| most.max(value.abs()));
-        brightness.check_light(self.light(), self.peak, strongest)?;
+        self.shared()
+            .check(brightness, &|light| strongest * light.coefficient.abs())?;
         let Some(series) = &self.intensity else {
             return Ok(());
         };
@@ -82,24 +60,16 @@ impl SourceKind for Curve {
         Ok(())
     }
 
-    fn light(&self) -> Light {
-        let falloff = Falloff {
-            profile: self.profile,
-            radius: self.radius,
-            reach: self.reach,
-        };
-        Light {
-            coefficient: falloff.coefficient(self.coefficient, self.peak),
-            color: self.color,
-            falloff,
+    fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+        for light in self.lights() {
+            for weight in self.intensity.as_deref().unwrap_or(&[1.0]) {
+                add(weight * light.emission());
+            }
         }
     }
 
-    fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
-        let emission = self.light().emission();
-        for weight in self.intensity.as_deref().unwrap_or(&[1.0]) {
-            add(weight * emission);
-        }
+    fn move_core(&mut self, place: &Placement) {
+        self.control_points = self.control_points.map(|point| place.point(point));
     }
 
     fn core(&self) -> Core {

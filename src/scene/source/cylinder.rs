@@ -3,54 +3,31 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, source, source_struct};
 use crate::scene::values::{Checked, direction, read_vector, vector};
 
-/// An infinite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the line (2015, eq. 3).
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct Cylinder {
-    /// A point of the line.
-    #[serde(default, deserialize_with = "read_vector")]
-    pub point: DVec3,
-    /// Direction of the line, of any length but zero.
-    #[serde(deserialize_with = "read_vector")]
-    pub direction: DVec3,
-    /// The paper's energy coefficient.
-    #[serde(default = "one")]
-    pub coefficient: f64,
-    /// Linear RGB.
-    #[serde(default = "white", deserialize_with = "read_vector")]
-    pub color: DVec3,
-    /// How the field falls off.
-    #[serde(default)]
-    pub profile: Profile,
-    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
-    #[serde(default)]
-    pub radius: f64,
-    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reach: Option<f64>,
-    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
-    /// It needs a radius, and where the light of the profile has no end, a reach.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak: Option<f64>,
+source_struct! {
+    /// An infinite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the line (2015, eq. 3).
+    #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Cylinder {
+        /// A point of the line.
+        #[serde(default, deserialize_with = "read_vector")]
+        pub point: DVec3,
+        /// Direction of the line, of any length but zero.
+        #[serde(deserialize_with = "read_vector")]
+        pub direction: DVec3,
+    }
 }
 
 impl Cylinder {
     /// Makes a white line through the origin.
     #[must_use]
     pub fn new(direction: DVec3) -> Self {
-        Self {
+        source!(Self {
             point: DVec3::ZERO,
             direction,
-            coefficient: one(),
-            color: white(),
-            profile: Profile::default(),
-            radius: 0.0,
-            reach: None,
-            peak: None,
-        }
+        })
     }
 }
 
@@ -58,20 +35,12 @@ impl SourceKind for Cylinder {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("point", self.point)?;
         direction("direction", self.direction)?;
-        brightness.check_light(self.light(), self.peak, 1.0)
+        self.shared().check(brightness, &|light| light.coefficient.abs())
     }
 
-    fn light(&self) -> Light {
-        let falloff = Falloff {
-            profile: self.profile,
-            radius: self.radius,
-            reach: self.reach,
-        };
-        Light {
-            coefficient: falloff.coefficient(self.coefficient, self.peak),
-            color: self.color,
-            falloff,
-        }
+    fn move_core(&mut self, place: &Placement) {
+        self.point = place.point(self.point);
+        self.direction = place.direction(self.direction);
     }
 
     fn core(&self) -> Core {

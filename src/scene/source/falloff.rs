@@ -13,9 +13,9 @@ use crate::scene::values::{Checked, Fault, finite, positive};
 #[non_exhaustive]
 pub enum Profile {
     /// `1/d` (2015, 2010).
-    #[default]
     Inverse,
     /// `1/d^2` (Sakai 2006).
+    #[default]
     InverseSquare,
     /// `1/d^3`; with a radius that of Plummer's sphere.
     InverseCube,
@@ -67,7 +67,7 @@ impl Falloff {
 
     /// Returns the light of a ray straight across a core of coefficient 1, measured by length; infinite where it has
     /// no limit.
-    fn light_across(&self) -> f64 {
+    pub(crate) fn light_across(&self) -> f64 {
         let Self {
             profile,
             radius,
@@ -130,8 +130,8 @@ impl Falloff {
         Err(Fault::new("peak", advice))
     }
 
-    /// Checks its numbers.
-    pub(super) fn check(&self) -> Checked {
+    /// Checks its numbers, each for itself.
+    pub(super) fn check_sizes(&self) -> Checked {
         finite("radius", self.radius)?;
         if self.radius < 0.0 {
             let message = format!(
@@ -140,26 +140,29 @@ impl Falloff {
             );
             return Err(Fault::new("radius", message));
         }
-        match self.radius {
-            0.0 if self.profile.needs_radius() => {
-                let message = "this profile has a radius as its width: give one, such as 0.1";
-                return Err(Fault::new("radius", message));
+        if self.radius > 0.0 {
+            positive("radius", self.radius)?;
+        }
+        self.reach.map_or(Ok(()), |reach| positive("reach", reach))
+    }
+
+    /// Checks its numbers, and whether they go together.
+    pub(super) fn check(&self) -> Checked {
+        self.check_sizes()?;
+        if self.radius == 0.0 && self.profile.needs_radius() {
+            let message = "this profile has a radius as its width: give one, such as 0.1";
+            return Err(Fault::new("radius", message));
+        }
+        match self.reach {
+            Some(reach) if reach <= self.radius => {
+                let message = format!(
+                    "light that ends at {reach} leaves nothing of a core of the radius {}: make reach larger",
+                    self.radius
+                );
+                Err(Fault::new("reach", message))
             }
-            0.0 => {}
-            radius => positive("radius", radius)?,
+            _ => Ok(()),
         }
-        let Some(reach) = self.reach else {
-            return Ok(());
-        };
-        positive("reach", reach)?;
-        if reach <= self.radius {
-            let message = format!(
-                "light that ends at {reach} leaves nothing of a core of the radius {}: make reach larger",
-                self.radius
-            );
-            return Err(Fault::new("reach", message));
-        }
-        Ok(())
     }
 }
 
@@ -173,6 +176,7 @@ mod tests {
     #[track_caller]
     fn expect(change: impl Fn(&mut Sphere), key: &str, words: &str) {
         let mut scene = Scene::new(Camera::new(-4.0 * DVec3::Y, DVec3::ZERO));
+        scene.integration.measure = Measure::Parameter;
         let mut sphere = Sphere::default();
         change(&mut sphere);
         scene.spheres.push(sphere);

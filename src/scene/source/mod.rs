@@ -5,14 +5,21 @@ use std::borrow::Cow;
 use glam::DVec3;
 
 use super::Measure;
+use super::group::Placement;
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
 
 mod core;
 mod falloff;
+mod layer;
+mod shared;
 
 pub(super) use core::Core;
 pub use falloff::{Falloff, Profile};
+pub use layer::Layer;
+use layer::read_layers;
+pub(crate) use shared::{HasLight, Shared};
+use shared::{source, source_struct};
 
 macro_rules! declare_kinds {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
@@ -22,7 +29,7 @@ macro_rules! declare_kinds {
 }
 for_each_kind!(declare_kinds);
 
-/// What makes a source's core glow.
+/// What makes a source's core glow: a source has one light, or one a layer.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Light {
     pub coefficient: f64,
@@ -38,16 +45,27 @@ impl Light {
 }
 
 /// What every kind of source says of itself.
-pub(crate) trait SourceKind {
+pub(crate) trait SourceKind: HasLight {
     /// Checks its values; `brightness` tells which light float32 can hold.
     fn check(&self, brightness: &Brightness) -> Checked;
 
-    /// Returns its light as a whole.
-    fn light(&self) -> Light;
-
     /// Calls `add` with the emission of each of its parts, where some may be of another sign.
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
-        add(self.light().emission());
+        self.lights().for_each(|light| add(light.emission()));
+    }
+
+    /// Moves its own points, directions and lengths to where a group puts them; what all kinds have is scaled for it.
+    fn move_core(&mut self, place: &Placement);
+
+    /// Returns it as a group puts it.
+    fn placed(&self, place: &Placement) -> Self
+    where
+        Self: Clone,
+    {
+        let mut placed = self.clone();
+        placed.move_core(place);
+        placed.scale(place.scale);
+        placed
     }
 
     /// Returns where its core is, of a source whose values are right.
@@ -93,23 +111,21 @@ impl Brightness {
         self.most * field
     }
 
-    /// Checks a light whose coefficient is that of a peak, if there is one; `weight` is the greatest local intensity.
-    fn check_light(&self, light: Light, peak: Option<f64>, weight: f64) -> Checked {
-        let Light {
-            coefficient,
-            color,
-            falloff,
-        } = light;
-        vector("color", color)?;
+    /// Checks the light that the keys of a source, or of one of its layers, make; `strongest` gives the greatest
+    /// coefficient that it has anywhere.
+    fn check_light(&self, shared: &Shared<'_>, strongest: &dyn Fn(&Light) -> f64) -> Checked {
+        vector("color", shared.color)?;
+        let falloff = shared.falloff();
         falloff.check()?;
-        match peak {
+        match shared.peak {
             Some(peak) => falloff.check_peak(peak, self.measure)?,
-            None => finite("coefficient", coefficient)?,
+            None => finite("coefficient", shared.coefficient)?,
         }
-        let brightest = self.of(falloff) * weight * coefficient.abs() * color.abs().max_element();
+        let strongest = strongest(&shared.light());
+        let brightest = self.of(falloff) * strongest * shared.color.abs().max_element();
         if brightest > BRIGHTEST {
             return Err(Fault::new(
-                if peak.is_some() {
+                if shared.peak.is_some() {
                     "peak"
                 } else {
                     "coefficient"
@@ -128,12 +144,12 @@ fn item(list: &str, index: usize) -> Cow<'static, str> {
     format!("{list}[{index}]").into()
 }
 
-fn one() -> f64 {
-    1.0
-}
-
 fn plus_z() -> DVec3 {
     DVec3::Z
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 fn white() -> DVec3 {

@@ -3,46 +3,29 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, item, one, white};
-use crate::scene::values::{Checked, Fault, positive, read_vector, read_vectors, vector};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, item, source, source_struct};
+use crate::scene::values::{Checked, Fault, positive, read_vectors, vector};
 
-/// A chain of light: one core of many pieces, whose field is that of the nearest point of them all. Joints are no
-/// brighter than what lies beside them.
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct LightPath {
-    /// What the shape goes through, or is drawn towards; at least two points.
-    #[serde(deserialize_with = "read_vectors")]
-    pub points: Vec<DVec3>,
-    /// How the points make the core.
-    #[serde(default)]
-    pub shape: PathShape,
-    /// Whether the last point is joined to the first.
-    #[serde(default)]
-    pub closed: bool,
-    /// How far the straight pieces that devices draw may be off a curved shape, world units; `None`: as the
-    /// tolerance asks, and less than a hundredth of a pixel.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub flatness: Option<f64>,
-    /// The paper's energy coefficient.
-    #[serde(default = "one")]
-    pub coefficient: f64,
-    /// Linear RGB.
-    #[serde(default = "white", deserialize_with = "read_vector")]
-    pub color: DVec3,
-    /// How the field falls off.
-    #[serde(default)]
-    pub profile: Profile,
-    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
-    #[serde(default)]
-    pub radius: f64,
-    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reach: Option<f64>,
-    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
-    /// It needs a radius, and where the light of the profile has no end, a reach.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak: Option<f64>,
+source_struct! {
+    /// A chain of light: one core of many pieces, whose field is that of the nearest point of them all. Joints are no
+    /// brighter than what lies beside them.
+    #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct LightPath {
+        /// What the shape goes through, or is drawn towards; at least two points.
+        #[serde(deserialize_with = "read_vectors")]
+        pub points: Vec<DVec3>,
+        /// How the points make the core.
+        #[serde(default)]
+        pub shape: PathShape,
+        /// Whether the last point is joined to the first.
+        #[serde(default)]
+        pub closed: bool,
+        /// How far the straight pieces that devices draw may be off a curved shape, world units; `None`: as the
+        /// tolerance asks, and less than a hundredth of a pixel.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub flatness: Option<f64>,
+    }
 }
 
 /// How the points of a [`LightPath`] make its core.
@@ -138,18 +121,12 @@ impl LightPath {
     /// Makes a white chain of straight lines.
     #[must_use]
     pub fn new(points: Vec<DVec3>) -> Self {
-        Self {
+        source!(Self {
             points,
             shape: PathShape::default(),
             closed: false,
             flatness: None,
-            coefficient: one(),
-            color: white(),
-            profile: Profile::default(),
-            radius: 0.0,
-            reach: None,
-            peak: None,
-        }
+        })
     }
 
     /// Returns its polynomial pieces, one after another.
@@ -253,20 +230,14 @@ fn corners(pieces: &[PathPiece], chords: impl Fn(&PathPiece) -> usize) -> Vec<DV
 impl SourceKind for LightPath {
     fn check(&self, brightness: &Brightness) -> Checked {
         self.check_points()?;
-        brightness.check_light(self.light(), self.peak, 1.0)
+        self.shared().check(brightness, &|light| light.coefficient.abs())
     }
 
-    fn light(&self) -> Light {
-        let falloff = Falloff {
-            profile: self.profile,
-            radius: self.radius,
-            reach: self.reach,
-        };
-        Light {
-            coefficient: falloff.coefficient(self.coefficient, self.peak),
-            color: self.color,
-            falloff,
+    fn move_core(&mut self, place: &Placement) {
+        for point in &mut self.points {
+            *point = place.point(*point);
         }
+        self.flatness = self.flatness.map(|flatness| place.scale * flatness);
     }
 
     fn core(&self) -> Core {

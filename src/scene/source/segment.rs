@@ -3,55 +3,32 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, one, white};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, source, source_struct};
 use crate::scene::values::{Checked, read_vector, vector};
 
-/// A finite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point between its ends.
-/// Ends that coincide make a point.
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct Segment {
-    /// One end.
-    #[serde(deserialize_with = "read_vector")]
-    pub from: DVec3,
-    /// The other end.
-    #[serde(deserialize_with = "read_vector")]
-    pub to: DVec3,
-    /// The paper's energy coefficient.
-    #[serde(default = "one")]
-    pub coefficient: f64,
-    /// Linear RGB.
-    #[serde(default = "white", deserialize_with = "read_vector")]
-    pub color: DVec3,
-    /// How the field falls off.
-    #[serde(default)]
-    pub profile: Profile,
-    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
-    #[serde(default)]
-    pub radius: f64,
-    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reach: Option<f64>,
-    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
-    /// It needs a radius, and where the light of the profile has no end, a reach.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak: Option<f64>,
+source_struct! {
+    /// A finite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point between its
+    /// ends. Ends that coincide make a point.
+    #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Segment {
+        /// One end.
+        #[serde(deserialize_with = "read_vector")]
+        pub from: DVec3,
+        /// The other end.
+        #[serde(deserialize_with = "read_vector")]
+        pub to: DVec3,
+    }
 }
 
 impl Segment {
     /// Makes a white line between two points.
     #[must_use]
     pub fn new(from: DVec3, to: DVec3) -> Self {
-        Self {
+        source!(Self {
             from,
             to,
-            coefficient: one(),
-            color: white(),
-            profile: Profile::default(),
-            radius: 0.0,
-            reach: None,
-            peak: None,
-        }
+        })
     }
 }
 
@@ -59,20 +36,12 @@ impl SourceKind for Segment {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("from", self.from)?;
         vector("to", self.to)?;
-        brightness.check_light(self.light(), self.peak, 1.0)
+        self.shared().check(brightness, &|light| light.coefficient.abs())
     }
 
-    fn light(&self) -> Light {
-        let falloff = Falloff {
-            profile: self.profile,
-            radius: self.radius,
-            reach: self.reach,
-        };
-        Light {
-            coefficient: falloff.coefficient(self.coefficient, self.peak),
-            color: self.color,
-            falloff,
-        }
+    fn move_core(&mut self, place: &Placement) {
+        self.from = place.point(self.from);
+        self.to = place.point(self.to);
     }
 
     fn core(&self) -> Core {

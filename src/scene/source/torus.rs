@@ -3,58 +3,35 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, one, plus_z, white};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, plus_z, source, source_struct};
 use crate::scene::values::{Checked, direction, positive, read_vector, vector};
 
-/// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle
-/// (2015, eq. 7).
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct Torus {
-    /// Middle of the ring.
-    #[serde(default, deserialize_with = "read_vector")]
-    pub center: DVec3,
-    /// Normal of the ring's plane, of any length but zero.
-    #[serde(default = "plus_z", deserialize_with = "read_vector")]
-    pub axis: DVec3,
-    /// Radius of the circle, positive.
-    pub major_radius: f64,
-    /// The paper's energy coefficient.
-    #[serde(default = "one")]
-    pub coefficient: f64,
-    /// Linear RGB.
-    #[serde(default = "white", deserialize_with = "read_vector")]
-    pub color: DVec3,
-    /// How the field falls off.
-    #[serde(default)]
-    pub profile: Profile,
-    /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
-    #[serde(default)]
-    pub radius: f64,
-    /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reach: Option<f64>,
-    /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without decay.
-    /// It needs a radius, and where the light of the profile has no end, a reach.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak: Option<f64>,
+source_struct! {
+    /// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle
+    /// (2015, eq. 7).
+    #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+    #[serde(deny_unknown_fields)]
+    pub struct Torus {
+        /// Middle of the ring.
+        #[serde(default, deserialize_with = "read_vector")]
+        pub center: DVec3,
+        /// Normal of the ring's plane, of any length but zero.
+        #[serde(default = "plus_z", deserialize_with = "read_vector")]
+        pub axis: DVec3,
+        /// Radius of the circle, positive.
+        pub major_radius: f64,
+    }
 }
 
 impl Torus {
     /// Makes a white ring around the origin, in the plane z = 0.
     #[must_use]
     pub fn new(major_radius: f64) -> Self {
-        Self {
+        source!(Self {
             center: DVec3::ZERO,
             axis: plus_z(),
             major_radius,
-            coefficient: one(),
-            color: white(),
-            profile: Profile::default(),
-            radius: 0.0,
-            reach: None,
-            peak: None,
-        }
+        })
     }
 }
 
@@ -63,20 +40,13 @@ impl SourceKind for Torus {
         vector("center", self.center)?;
         direction("axis", self.axis)?;
         positive("major_radius", self.major_radius)?;
-        brightness.check_light(self.light(), self.peak, 1.0)
+        self.shared().check(brightness, &|light| light.coefficient.abs())
     }
 
-    fn light(&self) -> Light {
-        let falloff = Falloff {
-            profile: self.profile,
-            radius: self.radius,
-            reach: self.reach,
-        };
-        Light {
-            coefficient: falloff.coefficient(self.coefficient, self.peak),
-            color: self.color,
-            falloff,
-        }
+    fn move_core(&mut self, place: &Placement) {
+        self.center = place.point(self.center);
+        self.axis = place.direction(self.axis);
+        self.major_radius *= place.scale;
     }
 
     fn core(&self) -> Core {

@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 
 use super::{Anchor, Pack, Rows, device_struct, falloff, line, rest, scene};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::Light;
 
 device_struct! {
     /// A half-line of light.
@@ -31,7 +31,7 @@ device_struct! {
 impl Pack for scene::Beam {
     type Device = Beam;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Beam {
+    fn pack(&self, light: &Light, anchor: &Anchor, _: &mut Rows) -> Beam {
         let tip = anchor.position(self.tip);
         let per_taper = self.taper_length().map_or(0.0, |length| 1.0 / length);
         let (point, direction) = line(anchor, self.tip, self.direction);
@@ -42,13 +42,13 @@ impl Pack for scene::Beam {
             point_rest: point.rest,
             direction: direction.value,
             direction_rest: direction.rest,
-            emission: anchor.emission(1.0, self.color),
-            line: self.light().coefficient as f32,
-            cap: self.cap() as f32,
+            emission: anchor.emission(1.0, light.color),
+            line: light.coefficient as f32,
+            cap: self.cap(light) as f32,
             sphere: self.sphere_coefficient as f32,
             per_taper: per_taper as f32,
             per_taper_rest: rest(per_taper),
-            falloff: falloff(self.light().falloff),
+            falloff: falloff(light.falloff),
             ..Zeroable::zeroed()
         }
     }

@@ -1,12 +1,11 @@
 //! A Bezier curve on the device (`cl/wave/source/curve.h`), in its own frame: the plane of its parabola, origin C(1/2).
 
-use std::ops::Range;
-
+use bytemuck::Zeroable;
 use glam::DVec3;
 
 use super::{Anchor, Pack, Row, Rows, device_struct, fine, falloff, scene, vector};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::Light;
 
 /// Below this ratio of `|C2|` to `|C'(1/2)|` a curve counts as straight: the cubic's roots would lose digits to its
 /// far-off vertex, while the kernels' foot on the tangent needs two Newton steps.
@@ -43,10 +42,10 @@ device_struct! {
 impl Pack for scene::Curve {
     type Device = Curve;
 
-    fn pack(&self, anchor: &Anchor, rows: &mut Rows) -> Curve {
+    fn pack(&self, light: &Light, anchor: &Anchor, rows: &mut Rows) -> Curve {
         let begin = rows.list.len();
         let [b0, b1, b2] = self.control_points;
-        let mut coefficient = self.light().coefficient;
+        let mut coefficient = light.coefficient;
         match self.intensity.as_deref() {
             // A point is nearest at t = 0, whatever the series holds beyond.
             Some([first, ..]) if b0 == b1 && b1 == b2 => coefficient *= first,
@@ -61,17 +60,18 @@ impl Pack for scene::Curve {
             None => {}
         }
         let spline = begin as u32..rows.list.len() as u32;
-        curve(anchor, self, anchor.emission(coefficient, self.color), spline)
+        Curve {
+            emission: anchor.emission(coefficient, light.color),
+            spline_begin: spline.start,
+            spline_count: spline.end - spline.start,
+            falloff: falloff(light.falloff),
+            ..shape(anchor, self.control_points)
+        }
     }
 }
 
-fn curve(
-    anchor: &Anchor,
-    curve: &scene::Curve,
-    emission: [f32; 4],
-    spline: Range<u32>,
-) -> Curve {
-    let [b0, b1, b2] = curve.control_points;
+/// Packs where a curve is.
+fn shape(anchor: &Anchor, [b0, b1, b2]: [DVec3; 3]) -> Curve {
     let c2 = b0 - 2.0 * b1 + b2;
     let middle = 0.25 * b0 + 0.5 * b1 + 0.25 * b2;
     let velocity = b2 - b0; // C'(1/2)
@@ -103,7 +103,6 @@ fn curve(
         along: vector(along),
         across: vector(across),
         normal: vector(along.cross(across)),
-        emission,
         velocity_along: velocity_along as f32,
         velocity_across: velocity_across as f32,
         bend: bend as f32,
@@ -113,10 +112,7 @@ fn curve(
             (0.5 * velocity_across / bend) as f32
         },
         is_straight: u32::from(is_straight),
-        spline_begin: spline.start,
-        spline_count: spline.end - spline.start,
-        padding: 0,
-        falloff: falloff(curve.light().falloff),
+        ..Zeroable::zeroed()
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::{Anchor, Pack, Rows, device_struct, falloff, line, scene};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::Light;
 
 device_struct! {
     /// A line of light.
@@ -20,15 +20,15 @@ device_struct! {
 impl Pack for scene::Cylinder {
     type Device = Cylinder;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Cylinder {
+    fn pack(&self, light: &Light, anchor: &Anchor, _: &mut Rows) -> Cylinder {
         let (point, direction) = line(anchor, self.point, self.direction);
         Cylinder {
             point: point.value,
             point_rest: point.rest,
             direction: direction.value,
             direction_rest: direction.rest,
-            emission: anchor.emission(self.light().coefficient, self.color),
-            falloff: falloff(self.light().falloff),
+            emission: anchor.emission(light.coefficient, light.color),
+            falloff: falloff(light.falloff),
         }
     }
 }

@@ -12,7 +12,7 @@ pub use view::{integrand, ray, view};
 
 use crate::opencl::device_struct;
 use crate::scene::kinds::{KIND_COUNT, for_each_kind};
-use crate::scene::{self, Falloff, Measure, Profile, Scene, SourcesStamp};
+use crate::scene::{self, Falloff, HasLight, Light, Measure, Profile, Scene, SourcesStamp};
 
 /// Where the float32 coordinates begin, how far the rays go from there, and what every emission is multiplied with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,15 +76,15 @@ trait Pack {
     /// The kind's struct on the device.
     type Device;
 
-    /// Packs the source; what its struct does not hold goes to `rows`.
-    fn pack(&self, anchor: &Anchor, rows: &mut Rows) -> Self::Device;
+    /// Packs the source with one of its lights; what its struct does not hold goes to `rows`.
+    fn pack(&self, light: &Light, anchor: &Anchor, rows: &mut Rows) -> Self::Device;
 }
 
 macro_rules! define_sources {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         $(pub mod $kind;)*
 
-        /// A scene's sources as the kernels read them.
+        /// A scene's sources as the kernels read them: one entry a light.
         #[derive(Debug, Clone, Default, PartialEq)]
         pub struct Sources {
             $($(#[$doc])* pub $list: Vec<$kind::$Type>,)*
@@ -107,7 +107,10 @@ macro_rules! define_sources {
                 rows.has_series = false;
                 $(
                     self.$list.clear();
-                    self.$list.extend(scene.$list.iter().map(|it| it.pack(anchor, rows)));
+                    for source in scene.$list.iter() {
+                        let lights = source.lights();
+                        self.$list.extend(lights.map(|light| source.pack(&light, anchor, rows)));
+                    }
                 )*
             }
 

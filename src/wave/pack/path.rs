@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::layout::Falloff;
 use super::{Anchor, Pack, Row, Rows, device_struct, falloff, fine, scene};
-use crate::scene::{PathPiece, SourceKind};
+use crate::scene::{Light, PathPiece};
 
 device_struct! {
     /// A chain of light.
@@ -39,7 +39,7 @@ const BALL_MARGIN: f64 = 1e-5;
 impl Pack for scene::LightPath {
     type Device = LightPath;
 
-    fn pack(&self, anchor: &Anchor, rows: &mut Rows) -> LightPath {
+    fn pack(&self, light: &Light, anchor: &Anchor, rows: &mut Rows) -> LightPath {
         let levels = self.levels(|piece| flatness(piece, anchor));
         let row = rows.list.len();
         rows.list.resize(row + 2 * levels.len(), [0.0; 4]);
@@ -54,12 +54,12 @@ impl Pack for scene::LightPath {
             rows.list[row + 2 * k + 1] = [(from * from) as f32, level.off as f32, 0.0, 0.0];
         }
         LightPath {
-            emission: anchor.emission(self.light().coefficient, self.color),
+            emission: anchor.emission(light.coefficient, light.color),
             row: row as u32,
             level_count: levels.len() as u32,
             padding_0: 0,
             padding_1: 0,
-            falloff: falloff(self.light().falloff),
+            falloff: falloff(light.falloff),
         }
     }
 }
@@ -113,7 +113,7 @@ fn ball_of(points: &[DVec3]) -> (DVec3, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{LightPath, PathShape};
+    use crate::scene::{HasLight, LightPath, PathShape};
 
     #[test]
     fn balls_hold_the_pieces_of_their_groups_and_rows_lie_as_the_kernel_reads_them() {
@@ -132,7 +132,8 @@ mod tests {
         };
         let mut rows = Rows::default();
         rows.list.push([7.0; 4]);
-        let packed = path.pack(&anchor, &mut rows);
+        let light = path.lights().next().unwrap();
+        let packed = path.pack(&light, &anchor, &mut rows);
         assert!(packed.level_count > 3);
         for level in 0..packed.level_count as usize {
             let at = packed.row as usize + 2 * level;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Anchor, Pack, Rows, device_struct, falloff, line, scene};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::Light;
 
 device_struct! {
     /// A finite line of light.
@@ -25,7 +25,7 @@ device_struct! {
 impl Pack for scene::Segment {
     type Device = Segment;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Segment {
+    fn pack(&self, light: &Light, anchor: &Anchor, _: &mut Rows) -> Segment {
         // Any direction will do for a point: its whole line is beyond its ends.
         let direction = (self.to - self.from).try_normalize().unwrap_or(DVec3::X);
         let (from, to) = (anchor.position(self.from), anchor.position(self.to));
@@ -39,8 +39,8 @@ impl Pack for scene::Segment {
             point_rest: point.rest,
             direction: direction.value,
             direction_rest: direction.rest,
-            emission: anchor.emission(self.light().coefficient, self.color),
-            falloff: falloff(self.light().falloff),
+            emission: anchor.emission(light.coefficient, light.color),
+            falloff: falloff(light.falloff),
         }
     }
 }

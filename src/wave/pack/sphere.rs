@@ -3,7 +3,7 @@
 
 use super::{Anchor, Pack, Rows, device_struct, falloff, scene};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::Light;
 
 device_struct! {
     /// A point of light.
@@ -18,13 +18,13 @@ device_struct! {
 impl Pack for scene::Sphere {
     type Device = Sphere;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Sphere {
+    fn pack(&self, light: &Light, anchor: &Anchor, _: &mut Rows) -> Sphere {
         let center = anchor.position(self.center);
         Sphere {
             center: center.value,
             center_rest: center.rest,
-            emission: anchor.emission(self.light().coefficient, self.color),
-            falloff: falloff(self.light().falloff),
+            emission: anchor.emission(light.coefficient, light.color),
+            falloff: falloff(light.falloff),
         }
     }
 }

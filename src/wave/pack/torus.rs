@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 
 use super::{Anchor, Pack, Rows, device_struct, fine, falloff, rest, scene};
 use super::layout::Falloff;
-use crate::scene::SourceKind;
+use crate::scene::Light;
 
 device_struct! {
     /// A ring of light.
@@ -25,17 +25,17 @@ device_struct! {
 impl Pack for scene::Torus {
     type Device = Torus;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Torus {
+    fn pack(&self, light: &Light, anchor: &Anchor, _: &mut Rows) -> Torus {
         let (center, axis) = (anchor.position(self.center), fine(self.axis.normalize()));
         Torus {
             center: center.value,
             center_rest: center.rest,
             axis: axis.value,
             axis_rest: axis.rest,
-            emission: anchor.emission(self.light().coefficient, self.color),
+            emission: anchor.emission(light.coefficient, light.color),
             major_radius: self.major_radius as f32,
             major_radius_rest: rest(self.major_radius),
-            falloff: falloff(self.light().falloff),
+            falloff: falloff(light.falloff),
             ..Zeroable::zeroed()
         }
     }

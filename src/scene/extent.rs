@@ -1,0 +1,178 @@
+//! Where the sources of a scene are, and how long rays are that pass them.
+
+use glam::DVec3;
+
+use super::kinds::for_each_kind;
+use super::source::SourceKind;
+use super::{Camera, Scene};
+
+/// Rays of a length that no camera names go so many times as far from the projection plane as what they look at.
+const TIMES_BEYOND: f64 = 5.0;
+
+/// What float32 devices can integrate along, world units.
+const LONGEST: f64 = 1e9;
+
+/// A box along the axes of the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bounds {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Bounds {
+    const EMPTY: Self = Self {
+        low: DVec3::INFINITY,
+        high: DVec3::NEG_INFINITY,
+    };
+
+    fn join(&mut self, low: DVec3, high: DVec3) {
+        // What is no number is a fault that others tell.
+        if low.is_finite() && high.is_finite() {
+            (self.low, self.high) = (self.low.min(low), self.high.max(high));
+        }
+    }
+
+    /// Returns the greatest distance of its points from a point; 0 of an empty box.
+    fn farthest_from(&self, point: DVec3) -> f64 {
+        match self.low.cmple(self.high).all() {
+            true => (point - self.low)
+                .abs()
+                .max((self.high - point).abs())
+                .length(),
+            false => 0.0,
+        }
+    }
+}
+
+/// Where some sources are: the cores of those whose light goes on, and the others with all of their light. Of lines
+/// without end it has the point that they name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extent {
+    endless: Bounds,
+    ended: Bounds,
+}
+
+impl Extent {
+    const EMPTY: Self = Self {
+        endless: Bounds::EMPTY,
+        ended: Bounds::EMPTY,
+    };
+
+    /// Finds that of sources, right or wrong.
+    fn of(sources: &[impl SourceKind]) -> Self {
+        let mut extent = Self::EMPTY;
+        for source in sources {
+            let (low, high) = source.core().bounds();
+            match source.shared().farthest_reach() {
+                None => extent.endless.join(low, high),
+                Some(reach) => extent.ended.join(low - reach, high + reach),
+            }
+        }
+        extent
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.endless.join(other.endless.low, other.endless.high);
+        self.ended.join(other.ended.low, other.ended.high);
+    }
+
+    /// Returns the length of rays that pass all of it.
+    fn ray_length(&self, camera: &Camera) -> f64 {
+        let beyond = camera.eye.distance(camera.target);
+        let endless = self.endless.farthest_from(camera.eye).max(beyond);
+        let ended = self.ended.farthest_from(camera.eye) - camera.near;
+        (TIMES_BEYOND * (endless - camera.near))
+            .max(ended)
+            .min(LONGEST)
+    }
+}
+
+macro_rules! define_extent {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        impl Scene {
+            fn extent(&self) -> Extent {
+                let mut extent = Extent::EMPTY;
+                $(extent.join(&self.$list.extent(|sources| Extent::of(sources)));)*
+                extent
+            }
+        }
+    };
+}
+for_each_kind!(define_extent);
+
+impl Scene {
+    /// Returns the length of every ray, `|E - S|`, world units: the camera's, or where it names none one that passes all
+    /// sources. That is, measured from the projection plane, 5 times as far as the target and the cores of sources
+    /// without a reach, and no less far than the light of those with one; at most 1e9. Cores are taken by the box around
+    /// them, cylinders and beams by the point or tip that they name.
+    #[must_use]
+    pub fn ray_length(&self) -> f64 {
+        let camera = &self.camera;
+        camera
+            .ray_length
+            .unwrap_or_else(|| self.extent().ray_length(camera))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Beam, Cylinder, Layer, Sphere, Torus};
+
+    /// From 4 before the origin, the plane at 1.
+    fn scene() -> Scene {
+        Scene::new(Camera::new(-4.0 * DVec3::Y, DVec3::ZERO))
+    }
+
+    #[test]
+    fn rays_pass_all_sources_and_a_reach_ends_them() {
+        let mut scene = scene();
+        assert_eq!(scene.ray_length(), 15.0);
+        scene.spheres.push(Sphere {
+            center: DVec3::new(0.0, -1.0, 0.0),
+            ..Sphere::default()
+        });
+        assert_eq!(scene.ray_length(), 15.0, "the target is farther");
+        scene.spheres[0].center.y = 16.0;
+        assert_eq!(scene.ray_length(), 95.0);
+        scene.spheres[0].reach = Some(3.0);
+        let corner = DVec3::new(3.0, 23.0, 3.0);
+        assert_eq!(scene.ray_length(), corner.length() - 1.0);
+        let layer = |reach| Layer {
+            reach,
+            ..Layer::default()
+        };
+        scene.spheres[0].layers = vec![layer(None), layer(Some(4.0))];
+        let corner = DVec3::new(4.0, 24.0, 4.0);
+        assert_eq!(scene.ray_length(), corner.length() - 1.0);
+        scene.spheres[0].reach = None;
+        assert_eq!(scene.ray_length(), 95.0, "a layer has no reach");
+        scene.camera.ray_length = Some(2.0);
+        assert_eq!(scene.ray_length(), 2.0);
+    }
+
+    #[test]
+    fn rings_count_whole_and_lines_by_their_point() {
+        let mut scene = scene();
+        scene.tori.push(Torus::new(3.0));
+        let expected = 5.0 * (DVec3::new(3.0, 7.0, 0.0).length() - 1.0);
+        assert!((scene.ray_length() - expected).abs() < 1e-12);
+        scene.tori.clear();
+        let point = 10.0 * DVec3::Y;
+        scene.cylinders.push(Cylinder {
+            point,
+            ..Cylinder::new(DVec3::X)
+        });
+        assert_eq!(scene.ray_length(), 65.0);
+        scene.cylinders.clear();
+        scene.beams.push(Beam {
+            tip: point,
+            ..Beam::new(DVec3::Y)
+        });
+        assert_eq!(scene.ray_length(), 65.0);
+        scene.beams[0].tip.y = f64::NAN;
+        assert_eq!(scene.ray_length(), 15.0);
+        scene.beams[0].tip.y = 1e9;
+        assert_eq!(scene.ray_length(), 1e9);
+    }
+}

@@ -1,0 +1,96 @@
+//! `[[group]]`: sources that a file places together. The scene gets them as they are placed.
+
+use glam::DVec3;
+use serde::Deserialize;
+
+use crate::error::{Result, SceneError};
+use crate::scene::group::key_in_groups;
+use crate::scene::kinds::{KIND_COUNT, for_each_kind};
+use crate::scene::values::read_vector;
+use crate::scene::*;
+
+macro_rules! define_group_table {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        /// A group as a file describes it.
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub(super) struct GroupTable {
+            #[serde(default = "one")]
+            scale: f64,
+            #[serde(default)]
+            rotate: Option<Rotation>,
+            #[serde(default, deserialize_with = "read_vector")]
+            translate: DVec3,
+            #[serde(default)]
+            repeat: Option<Repeat>,
+            $(#[serde(default)] $kind: Vec<$Type>,)*
+            #[serde(default)]
+            group: Vec<GroupTable>,
+        }
+
+        impl From<GroupTable> for Group {
+            fn from(table: GroupTable) -> Self {
+                Self {
+                    scale: table.scale,
+                    rotate: table.rotate,
+                    translate: table.translate,
+                    repeat: table.repeat,
+                    $($list: table.$kind,)*
+                    groups: table.group.into_iter().map(Self::from).collect(),
+                }
+            }
+        }
+
+        fn counts(scene: &Scene) -> [usize; KIND_COUNT] {
+            [$(scene.$list.len()),*]
+        }
+    };
+}
+for_each_kind!(define_group_table);
+
+fn one() -> f64 {
+    1.0
+}
+
+/// The groups of a file, whose sources stand in the scene behind the others.
+pub(super) struct Groups {
+    groups: Vec<Group>,
+    /// How many sources of each kind stand before theirs.
+    before: [usize; KIND_COUNT],
+}
+
+impl Groups {
+    /// Adds the sources that the groups of a file make.
+    pub(super) fn add_to(scene: &mut Scene, tables: Vec<GroupTable>) -> Result<Self> {
+        let groups: Vec<Group> = tables.into_iter().map(Group::from).collect();
+        let before = counts(scene);
+        scene.add_groups(&groups, |index| format!("group[{index}]"))?;
+        Ok(Self { groups, before })
+    }
+
+    /// Checks the scene; a source at fault has the name that it has in the file.
+    pub(super) fn check(&self, scene: &Scene) -> std::result::Result<(), SceneError> {
+        scene.check().map_err(|fault| match self.key(&fault) {
+            Some(key) => {
+                let message = format!("{} (where its group puts it)", fault.message);
+                SceneError::value(key, message)
+            }
+            None => fault,
+        })
+    }
+
+    /// Returns the warnings of the scene, whose sources have the names that they have in the file.
+    pub(super) fn warnings(&self, scene: &Scene) -> Vec<SceneError> {
+        let mut warnings = scene.warnings();
+        for warning in &mut warnings {
+            if let Some(key) = self.key(warning) {
+                warning.key = key;
+            }
+        }
+        warnings
+    }
+
+    fn key(&self, fault: &SceneError) -> Option<String> {
+        key_in_groups(&fault.key, &self.groups, &self.before)
+    }
+}

@@ -1,0 +1,190 @@
+//! The keys that every kind of source has: how bright it is, of which colour, and how its light falls off.
+
+use glam::DVec3;
+
+use super::{Falloff, Layer, Light, Profile};
+
+/// Defines a source's struct: the fields that are its kind's own, then those that every kind has.
+macro_rules! source_struct {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis struct $Type:ident { $($fields:tt)* }
+    ) => {
+        $(#[$attribute])*
+        $visibility struct $Type {
+            $($fields)*
+            /// The papers' energy coefficient; of a beam that of its line.
+            #[serde(default = "crate::scene::source::one")]
+            pub coefficient: f64,
+            /// Linear RGB.
+            #[serde(
+                default = "crate::scene::source::white",
+                deserialize_with = "crate::scene::values::read_vector"
+            )]
+            pub color: glam::DVec3,
+            /// How the field falls off.
+            #[serde(default)]
+            pub profile: $crate::scene::Profile,
+            /// How thick the core is: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
+            #[serde(default)]
+            pub radius: f64,
+            /// The distance at which the light ends, smoothly; world units, more than the radius. `None`: nowhere.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub reach: Option<f64>,
+            /// Takes the coefficient's place: the light of a ray straight across the core, measured by length, without
+            /// decay. It needs a radius, and where the light of the profile has no end, a reach.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub peak: Option<f64>,
+            /// Several lights of the core, whose sum is the source's light: what a layer does not name it takes from
+            /// the source. At most 16; none: the source has one light.
+            #[serde(
+                default,
+                skip_serializing_if = "Vec::is_empty",
+                deserialize_with = "crate::scene::source::read_layers"
+            )]
+            pub layers: Vec<$crate::scene::Layer>,
+        }
+
+        impl $crate::scene::source::HasLight for $Type {
+            fn shared(&self) -> $crate::scene::source::Shared<'_> {
+                $crate::scene::source::Shared {
+                    coefficient: self.coefficient,
+                    color: self.color,
+                    profile: self.profile,
+                    radius: self.radius,
+                    reach: self.reach,
+                    peak: self.peak,
+                    layers: &self.layers,
+                }
+            }
+
+            fn scale(&mut self, scale: f64) {
+                self.radius *= scale;
+                self.reach = self.reach.map(|reach| scale * reach);
+                self.layers.iter_mut().for_each(|layer| layer.scale(scale));
+            }
+        }
+    };
+}
+pub(super) use source_struct;
+
+/// Makes a source of its kind's own fields; those that every kind has are at their defaults, or like another's.
+macro_rules! source {
+    ($Type:ident { $($fields:tt)* }) => {
+        $crate::scene::source::shared::source!($Type { $($fields)* } like $crate::scene::source::Shared::default())
+    };
+    ($Type:ident { $($fields:tt)* } like $other:expr) => {{
+        let other = $other;
+        $Type {
+            coefficient: other.coefficient,
+            color: other.color,
+            profile: other.profile,
+            radius: other.radius,
+            reach: other.reach,
+            peak: other.peak,
+            layers: other.layers.to_vec(),
+            $($fields)*
+        }
+    }};
+}
+pub(super) use source;
+
+/// What the keys that every kind has say of a source.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shared<'a> {
+    pub coefficient: f64,
+    pub color: DVec3,
+    pub profile: Profile,
+    pub radius: f64,
+    pub reach: Option<f64>,
+    pub peak: Option<f64>,
+    pub layers: &'a [Layer],
+}
+
+impl Default for Shared<'_> {
+    fn default() -> Self {
+        Self {
+            coefficient: super::one(),
+            color: super::white(),
+            profile: Profile::default(),
+            radius: 0.0,
+            reach: None,
+            peak: None,
+            layers: &[],
+        }
+    }
+}
+
+impl<'a> Shared<'a> {
+    pub(super) fn falloff(&self) -> Falloff {
+        Falloff {
+            profile: self.profile,
+            radius: self.radius,
+            reach: self.reach,
+        }
+    }
+
+    /// Returns the light that they make without layers.
+    pub(super) fn light(&self) -> Light {
+        let falloff = self.falloff();
+        Light {
+            coefficient: falloff.coefficient(self.coefficient, self.peak),
+            color: self.color,
+            falloff,
+        }
+    }
+
+    /// Returns the colours that they name and some light has, each with the layer that names it.
+    pub(crate) fn colors(self) -> impl Iterator<Item = (Option<usize>, DVec3)> + 'a {
+        let layers = self.layers.iter().map(|layer| layer.color);
+        let is_own_seen = self.layers.is_empty() || layers.clone().any(|color| color.is_none());
+        let own = is_own_seen.then_some((None, self.color));
+        let named = layers
+            .enumerate()
+            .filter_map(|(index, color)| Some((Some(index), color?)));
+        own.into_iter().chain(named)
+    }
+
+    /// Returns the distance at which all light ends; `None` where some has no end.
+    pub(crate) fn farthest_reach(&self) -> Option<f64> {
+        let mut layers = self.layers.iter();
+        match self.layers {
+            [] => self.reach,
+            _ => layers.try_fold(0.0, |farthest: f64, layer| {
+                Some(farthest.max(layer.reach.or(self.reach)?))
+            }),
+        }
+    }
+
+    /// Returns whether some light says by its peak how bright it is.
+    pub(crate) fn has_peak(&self) -> bool {
+        self.peak.is_some() || self.layers.iter().any(|layer| layer.peak.is_some())
+    }
+
+    /// Returns how many lights they make.
+    pub(crate) fn light_count(&self) -> usize {
+        self.layers.len().max(1)
+    }
+
+    /// Returns all lights that they make: one, or that of each layer.
+    pub(crate) fn lights(self) -> impl Iterator<Item = Light> + 'a {
+        let own = self.layers.is_empty().then(|| self.light());
+        let layers = self.layers.iter();
+        own.into_iter()
+            .chain(layers.map(move |layer| layer.over(&self).light()))
+    }
+}
+
+/// Has the keys that every kind has.
+pub(crate) trait HasLight {
+    /// Returns what they say.
+    fn shared(&self) -> Shared<'_>;
+
+    /// Multiplies the lengths among them.
+    fn scale(&mut self, scale: f64);
+
+    /// Returns its lights, whose sum is what is seen of it.
+    fn lights(&self) -> impl Iterator<Item = Light> + '_ {
+        self.shared().lights()
+    }
+}
