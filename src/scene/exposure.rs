@@ -20,8 +20,8 @@ for_each_kind!(define_all_shared);
 
 impl Scene {
     /// Returns the exposure, stops, that a scene file gets which names none. With it the light of the brightest source
-    /// is 1 beside its core, 0.008 of the picture's height away as far off as the target: whatever coefficients
-    /// and the scale of the world are, cores are white and the background is dark. 0 for a scene with a decay, or with a
+    /// is 1 beside its core, 0.008 of the picture's height away as far off as the target: cores are white and the
+    /// background is dark, whatever coefficients and the scale of the world are. 0 for a scene with a decay, or with a
     /// source that says by its peak how bright it is.
     #[must_use]
     pub fn fitting_exposure(&self) -> f64 {
