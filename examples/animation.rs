@@ -28,10 +28,7 @@ fn scene_at(time: f64) -> Scene {
         width: 320,
         height: 180,
     };
-    scene.decay = Some(Decay {
-        alpha: 1.0,
-        beta: 1.0,
-    });
+    scene.decay = Some(Decay::new(1.0, 1.0));
     scene.display = Display {
         exposure: -0.8,
         tone_map: ToneMap::Aces,

@@ -47,10 +47,7 @@ fn main() -> Result<(), Box<dyn error::Error>> {
     let mut renderer = Renderer::on_host(&context, &queue)?;
     let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
     scene.image = SIZE;
-    scene.decay = Some(Decay {
-        alpha: 0.1,
-        beta: 0.1,
-    });
+    scene.decay = Some(Decay::new(0.1, 0.1));
     for step in 0..3 {
         scene.tori = vec![Torus {
             coefficient: 0.06,

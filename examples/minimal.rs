@@ -11,10 +11,7 @@ use glam::DVec3;
 fn main() -> energywave::Result<()> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_default());
     let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
-    scene.decay = Some(Decay {
-        alpha: 0.1,
-        beta: 0.1,
-    });
+    scene.decay = Some(Decay::new(0.1, 0.1));
     scene.tori.push(Torus {
         coefficient: 0.06,
         profile: Profile::InverseSquare,

@@ -17,10 +17,7 @@ fn main() -> energywave::Result<()> {
         width: 480,
         height: 360,
     };
-    scene.decay = Some(Decay {
-        alpha: 0.1,
-        beta: 0.1,
-    });
+    scene.decay = Some(Decay::new(0.1, 0.1));
     scene.curves.push(Curve {
         coefficient: 0.05,
         profile: Profile::InverseSquare,

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! L(s)    = (1 - s) S + s E          the ray, from the projection plane on    Watanabe, Abe, Konno 2015, eq. 19
-//! zeta(s) = alpha / (s + beta)^2     the decay, or 1                          eq. 21
+//! zeta(s) = alpha / (s + beta)^2     the decay, or 1, or another power        eq. 21
 //! psi(P)  = sum of coefficient * field(P)                                     eq. 18
 //! field   = 1 / distance to the core: a point, a line, a ring,                eq. 2, 3, 7
 //!           a quadratic curve, here times its local intensity,                eq. 8-17
@@ -27,7 +27,7 @@
 //!
 //! # fn main() -> energywave::Result<()> {
 //! let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
-//! scene.decay = Some(Decay { alpha: 0.1, beta: 0.1 });
+//! scene.decay = Some(Decay::new(0.1, 0.1));
 //! scene.tori.push(Torus {
 //!     coefficient: 0.06,
 //!     profile: Profile::InverseSquare,

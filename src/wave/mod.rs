@@ -168,7 +168,7 @@ impl Wave {
         let anchor = Anchor {
             origin,
             reach,
-            measure: 1.0,
+            measure: pack::even_decay(scene),
         };
         let stamp = self.packed.pack(scene, anchor);
         let task = self.task(scene, Rays::Listed, FilmFormat::Floats);
@@ -194,6 +194,8 @@ impl Wave {
             kinds: self.packed.sources.counts().map(|count| count > 0),
             has_squares: self.packed.facts(scene).has_squares,
             has_shapes: self.packed.facts(scene).has_shapes,
+            has_convolutions: self.packed.facts(scene).has_convolutions,
+            fading: scene.fading().map(|fading| fading.power),
             has_series: !self.packed.sources.spline_pieces.is_empty(),
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
             film,
@@ -222,7 +224,8 @@ impl Wave {
         let nodes = match scene.integration.method {
             Method::Simpson { divisions } => {
                 // Of a ray that ends early, only the kernel knows where its nodes are.
-                let decay = scene.decay.filter(|_| !task.has_depth);
+                let is_known = !task.has_depth && task.fading.is_none();
+                let decay = scene.decay.filter(|decay| is_known && decay.power > 0);
                 simpson::nodes(divisions, decay)
             }
             Method::Exact { .. } => Vec::new(),

@@ -83,10 +83,7 @@ pub fn empty_scene(width: u32, height: u32) -> Scene {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.3, -3.5, 2.0), DVec3::ZERO));
     scene.image = ImageSize { width, height };
     scene.integration.method = Method::simpson(DIVISIONS);
-    scene.decay = Some(Decay {
-        alpha: 0.1,
-        beta: 0.1,
-    });
+    scene.decay = Some(Decay::new(0.1, 0.1));
     scene
 }
 

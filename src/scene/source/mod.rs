@@ -69,6 +69,10 @@ pub(crate) trait SourceKind {
 /// No product on the way to a pixel may exceed this: sums of up to 1e8 such lights are still finite in float32.
 pub(crate) const BRIGHTEST: f64 = 1e30;
 
+/// A bound of the integral of 1/r over a core of any length, seen from anywhere: lengths reach up to 1e9, and floors of
+/// distances begin at 1e-15.
+const MOST_ADDED_UP: f64 = 120.0;
+
 /// What decay and measure can make of a field on a ray through a core, and how close the ray comes to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Brightness {
@@ -89,12 +93,33 @@ impl Brightness {
             Profile::InverseCube => distance.powi(-3),
             Profile::Gaussian => 1.0,
             Profile::Smeared => 1.0 / falloff.radius,
+            Profile::Convolution => MOST_ADDED_UP,
         };
         self.most * field
     }
 
-    /// Checks a light whose coefficient is that of a peak, if there is one; `weight` is the greatest local intensity.
+    /// Checks a light of a kind whose cores may be added up.
+    fn check_added_light(&self, light: Light, peak: Option<f64>) -> Checked {
+        match light.falloff.profile {
+            Profile::Convolution => {
+                light.falloff.check_convolution(peak)?;
+                self.check_values(light, None, 1.0)
+            }
+            _ => self.check_light(light, peak, 1.0),
+        }
+    }
+
+    /// Checks a light of a kind whose cores are not added up.
     fn check_light(&self, light: Light, peak: Option<f64>, weight: f64) -> Checked {
+        if light.falloff.profile == Profile::Convolution {
+            let message = "adds up the light of a [[segment]]; other cores have none";
+            return Err(Fault::new("profile", message));
+        }
+        self.check_values(light, peak, weight)
+    }
+
+    /// Checks a light whose coefficient is that of a peak, if there is one; `weight` is the greatest local intensity.
+    fn check_values(&self, light: Light, peak: Option<f64>, weight: f64) -> Checked {
         let Light {
             coefficient,
             color,

@@ -59,7 +59,7 @@ impl SourceKind for Segment {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("from", self.from)?;
         vector("to", self.to)?;
-        brightness.check_light(self.light(), self.peak, 1.0)
+        brightness.check_added_light(self.light(), self.peak)
     }
 
     fn light(&self) -> Light {

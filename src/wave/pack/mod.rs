@@ -22,7 +22,7 @@ pub struct Anchor {
     pub origin: DVec3,
     /// World units.
     pub reach: f64,
-    /// `|E - S|` where light is measured by length, else 1.
+    /// `|E - S|` where light is measured by length, else 1; times a decay that is the same everywhere.
     pub measure: f64,
 }
 
@@ -36,7 +36,7 @@ impl Anchor {
         Self {
             origin,
             reach,
-            measure,
+            measure: measure * even_decay(scene),
         }
     }
 
@@ -47,6 +47,12 @@ impl Anchor {
     fn emission(&self, coefficient: f64, color: DVec3) -> [f32; 4] {
         vector(color * (coefficient * self.measure))
     }
+}
+
+/// Returns the decay of a scene where it is the same everywhere, else 1.
+pub fn even_decay(scene: &Scene) -> f64 {
+    let even = scene.decay.filter(|decay| decay.power == 0);
+    even.map_or(1.0, |decay| decay.alpha)
 }
 
 /// What the packing asks of every kind of source.
@@ -137,6 +143,8 @@ pub struct SourceFacts {
     pub has_squares: bool,
     /// Whether any has no closed form for how it falls off.
     pub has_shapes: bool,
+    /// Whether any adds up the light of all points of its core.
+    pub has_convolutions: bool,
     /// Whether any has a sharper peak than 1 over the distance.
     pub has_sharp_peaks: bool,
     /// Whether some may cancel others.
@@ -152,6 +160,7 @@ impl SourceFacts {
                 stamp,
                 has_squares: scene.any_falloff(|it| it.profile == Profile::InverseSquare),
                 has_shapes: scene.any_falloff(|it| it.is_shaped()),
+                has_convolutions: scene.any_falloff(|it| it.profile == Profile::Convolution),
                 has_sharp_peaks: scene.any_falloff(|it| it.is_sharp()),
                 has_both_signs: scene.has_light_of_both_signs(),
             };
@@ -183,6 +192,7 @@ fn falloff(falloff: Falloff) -> layout::Falloff {
             Profile::InverseCube => 2,
             Profile::Gaussian => 3,
             Profile::Smeared => 4,
+            Profile::Convolution => 5,
         },
         radius2: (radius * radius) as f32,
         reach2: reach2 as f32,
