@@ -23,13 +23,13 @@ Ray listed_ray(__global const RayRecord *const rays, const uintv index, const fl
 
 __kernel void trace(const FilmPart part, const Integrand integrand, const Launch launch,
                     __global const Node *const restrict nodes,
-                    KINDS(SOURCE_PARAMETER) __global const SplinePiece *const restrict spline_pieces,
+                    KINDS(SOURCE_PARAMETER) __global const float4 *const restrict rows,
                     __global uint *const restrict counts, FILM_PARAMETER,
                     __global const RayRecord *const restrict rays) {
     const uint begin = get_global_id(0) * LANES;
     if (begin >= part.count)
         return;
-    const Sources sources = {KINDS(SOURCE_VALUE) spline_pieces};
+    const Sources sources = {KINDS(SOURCE_VALUE) rows};
     const uintv index = min(begin + LANE_NUMBERS, (uintv)(part.count - 1));
     const Ray ray = listed_ray(rays, part.first + index, integrand.softening2);
     const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count, ray.length);

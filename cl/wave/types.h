@@ -69,10 +69,3 @@ typedef struct {
     float weight;
 } Node;
 CHECK_SIZE(Node, SIZEOF_NODE);
-
-// One piece of a quadratic B-spline: S = c0 + c1 x + c2 x^2, x in [0,1] over the piece.
-typedef struct {
-    float c0, c1, c2;
-    float padding;
-} SplinePiece;
-CHECK_SIZE(SplinePiece, SIZEOF_SPLINEPIECE);

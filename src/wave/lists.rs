@@ -1,7 +1,7 @@
 //! The lists that kernels read, on the device.
 
-use super::pack::layout::{Node, RayRecord, SplinePiece};
-use super::pack::{self, PackStamp, Sources};
+use super::pack::layout::{Node, RayRecord};
+use super::pack::{self, PackStamp, Row, Sources};
 use crate::error::Result;
 use crate::opencl::{Argument, Compute, Uploaded};
 use crate::scene::kinds::for_each_kind;
@@ -13,7 +13,7 @@ macro_rules! define_lists {
         pub(super) struct Lists {
             nodes: Uploaded<Node>,
             $($list: Uploaded<pack::$kind::$Type>,)*
-            spline_pieces: Uploaded<SplinePiece>,
+            rows: Uploaded<Row>,
             rays: Uploaded<RayRecord>,
             /// Which sources the device has.
             sources: Option<PackStamp>,
@@ -24,7 +24,7 @@ macro_rules! define_lists {
                 Self {
                     nodes: Uploaded::new("the list of quadrature nodes"),
                     $($list: Uploaded::new(concat!("the list of ", stringify!($list))),)*
-                    spline_pieces: Uploaded::new("the list of spline pieces"),
+                    rows: Uploaded::new("the list of sources' rows"),
                     rays: Uploaded::new("the list of rays"),
                     sources: None,
                 }
@@ -39,8 +39,7 @@ macro_rules! define_lists {
             ) -> Result<()> {
                 let is_known = self.sources.take() == Some(stamp);
                 $(self.$list.upload_unless(is_known, compute, &sources.$list)?;)*
-                let pieces = &sources.spline_pieces;
-                self.spline_pieces.upload_unless(is_known, compute, pieces)?;
+                self.rows.upload_unless(is_known, compute, &sources.rows.list)?;
                 self.sources = Some(stamp);
                 Ok(())
             }
@@ -48,7 +47,7 @@ macro_rules! define_lists {
             /// Returns the lists by the names that kernels know them by; of sources, those that there are.
             pub(super) fn named(&self, sources: &Sources) -> Vec<(&'static str, &dyn Argument)> {
                 let mut named: Vec<(&str, &dyn Argument)> =
-                    vec![("nodes", &self.nodes), ("spline_pieces", &self.spline_pieces)];
+                    vec![("nodes", &self.nodes), ("rows", &self.rows)];
                 $(if !sources.$list.is_empty() {
                     named.push((concat!(stringify!($kind), "_list"), &self.$list));
                 })*
@@ -59,7 +58,7 @@ macro_rules! define_lists {
             pub(super) fn settle(&mut self, compute: &Compute) -> Result<()> {
                 self.nodes.settle(compute)?;
                 $(self.$list.settle(compute)?;)*
-                self.spline_pieces.settle(compute)?;
+                self.rows.settle(compute)?;
                 self.rays.settle(compute)
             }
         }

@@ -196,7 +196,7 @@ impl Wave {
             has_shapes: self.packed.facts(scene).has_shapes,
             has_convolutions: self.packed.facts(scene).has_convolutions,
             fading: scene.fading().map(|fading| fading.power),
-            has_series: !self.packed.sources.spline_pieces.is_empty(),
+            has_series: self.packed.sources.rows.has_series,
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
             film,
             rays,

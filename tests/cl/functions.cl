@@ -43,7 +43,7 @@ __kernel void cubic(__global const float *ps, __global const float *hs, __global
     STORE(select(high, single, discriminant > 0.0f), greatest);
 }
 
-__kernel void spline(__global const SplinePiece *pieces, __global const float *count, __global const float *ts,
+__kernel void spline(__global const float4 *pieces, __global const float *count, __global const float *ts,
                      __global float *result) {
     STORE(spline_at(pieces, (uint)count[0], LOAD(ts)), result);
 }

@@ -74,7 +74,7 @@ fn marks_left(
     };
     let (nodes, spheres) = (upload(&compute, &nodes), upload(&compute, &packed.spheres));
     let (pieces, counts) = (
-        upload(&compute, &packed.spline_pieces),
+        upload(&compute, &packed.rows.list),
         upload(&compute, &[0_u32; 16]),
     );
     let depths = upload(&compute, &vec![5.0_f32; pixels]);
@@ -89,7 +89,7 @@ fn marks_left(
         ("launch", &launch),
         ("nodes", &nodes),
         ("sphere_list", &spheres),
-        ("spline_pieces", &pieces),
+        ("rows", &pieces),
         ("counts", &counts),
         ("depths", &depths),
         ("pixels", &output),

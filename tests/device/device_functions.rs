@@ -272,7 +272,7 @@ fn the_spline_matches_de_boor() {
             scene
                 .curves
                 .push(common::curve(common::CURVE_SHAPES[0], Some(series.clone())));
-            let pieces = Sources::new(&scene, &ANCHOR).spline_pieces;
+            let pieces = Sources::new(&scene, &ANCHOR).rows.list;
             // The pieces have a greatest weight of 1.
             let most = series.iter().copied().fold(0.0, f64::max);
             let scale = if most > 0.0 { 1.0 / most } else { 1.0 };

@@ -14,5 +14,5 @@
 // All that a scene holds on the device: sphere_list, torus_list and so on.
 typedef struct {
     KINDS(SOURCE_LIST)
-    __global const SplinePiece *spline_pieces;
+    __global const float4 *rows; // of numbers, to which sources refer: pieces of series, corners of paths
 } Sources;

@@ -1,5 +1,6 @@
 // Local intensity S(t): a clamped uniform quadratic B-spline (Watanabe, Abe, Konno 2015, eq. 14-16), which the host
-// cuts into its polynomial pieces. Only programs for scenes with such a series contain it.
+// cuts into its polynomial pieces: rows of c0, c1 and c2, S = c0 + c1 x + c2 x^2, x in [0,1] over the piece. Only
+// programs for scenes with such a series contain it.
 #pragma once
 #include "../../lanes.h"
 #include "../types.h"
@@ -10,7 +11,7 @@
 #define SERIES_LENGTH(source) 0u
 #endif
 
-floatv spline_at(__global const SplinePiece *const pieces, const uint count, const floatv t) {
+floatv spline_at(__global const float4 *const pieces, const uint count, const floatv t) {
     const floatv scaled = clamp(t, splat(0.0f), splat(1.0f)) * (float)count;
     const intv piece = clamp(to_intv_down(scaled), (intv)(0), (intv)((int)count - 1));
     const floatv x = scaled - to_floatv(piece);

@@ -225,12 +225,11 @@ uint share_of(const uint count, const uint share) {
 
 __kernel __attribute__((reqd_work_group_size(TILE_WORKERS, 1, 1))) void
 tiles(const View view, const FilmPart part, const Integrand integrand, const Launch launch,
-      __global const Node *const restrict nodes,
-      KINDS(SOURCE_PARAMETER) __global const SplinePiece *const restrict spline_pieces,
+      __global const Node *const restrict nodes, KINDS(SOURCE_PARAMETER) __global const float4 *const restrict rows,
       __global uint *const restrict counts, __global const float *const restrict depths, FILM_PARAMETER,
       const TilePass pass, __global uint *const restrict open_tiles, __global float *const restrict open_light) {
     __local TileMemory memory;
-    const Sources sources = {KINDS(SOURCE_VALUE) spline_pieces};
+    const Sources sources = {KINDS(SOURCE_VALUE) rows};
     const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count, splat(view.ray_length));
     const OpenTiles open = {open_tiles, open_light};
     const Screen screen = {&view, depths, integrand.softening2};

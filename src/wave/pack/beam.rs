@@ -2,7 +2,7 @@
 
 use bytemuck::Zeroable;
 
-use super::{Anchor, Pack, SplinePiece, device_struct, falloff, line, rest, scene};
+use super::{Anchor, Pack, Rows, device_struct, falloff, line, rest, scene};
 use super::layout::Falloff;
 use crate::scene::SourceKind;
 
@@ -31,7 +31,7 @@ device_struct! {
 impl Pack for scene::Beam {
     type Device = Beam;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Vec<SplinePiece>) -> Beam {
+    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Beam {
         let tip = anchor.position(self.tip);
         let per_taper = self.taper_length().map_or(0.0, |length| 1.0 / length);
         let (point, direction) = line(anchor, self.tip, self.direction);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Anchor, Pack, SplinePiece, device_struct, fine, falloff, scene, vector};
+use super::{Anchor, Pack, Row, Rows, device_struct, fine, falloff, scene, vector};
 use super::layout::Falloff;
 use crate::scene::SourceKind;
 
@@ -43,8 +43,8 @@ device_struct! {
 impl Pack for scene::Curve {
     type Device = Curve;
 
-    fn pack(&self, anchor: &Anchor, pieces: &mut Vec<SplinePiece>) -> Curve {
-        let begin = pieces.len();
+    fn pack(&self, anchor: &Anchor, rows: &mut Rows) -> Curve {
+        let begin = rows.list.len();
         let [b0, b1, b2] = self.control_points;
         let mut coefficient = self.light().coefficient;
         match self.intensity.as_deref() {
@@ -55,11 +55,12 @@ impl Pack for scene::Curve {
                 let most = series.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
                 let per_most = if most > 0.0 { most.recip() } else { 1.0 };
                 coefficient *= most;
-                pieces.extend(spline_pieces(series, per_most));
+                rows.list.extend(spline_pieces(series, per_most));
+                rows.has_series = true;
             }
             None => {}
         }
-        let spline = begin as u32..pieces.len() as u32;
+        let spline = begin as u32..rows.list.len() as u32;
         curve(anchor, self, anchor.emission(coefficient, self.color), spline)
     }
 }
@@ -122,7 +123,7 @@ fn curve(
 /// Returns the polynomial pieces of the clamped uniform quadratic B-spline (2015, eq. 14-16): each is a quadratic
 /// Bezier whose inner control value is the weight, and whose ends are the means of two weights, or an end weight
 /// itself; all times a scale.
-fn spline_pieces(series: &[f64], scale: f64) -> impl Iterator<Item = SplinePiece> {
+fn spline_pieces(series: &[f64], scale: f64) -> impl Iterator<Item = Row> {
     let last = series.len() - 1;
     let joint = move |i: usize| match i {
         0 => series[0],
@@ -131,12 +132,8 @@ fn spline_pieces(series: &[f64], scale: f64) -> impl Iterator<Item = SplinePiece
     };
     (0..last - 1).map(move |i| {
         let (from, control, to) = (joint(i), series[i + 1], joint(i + 1));
-        SplinePiece {
-            c0: (scale * from) as f32,
-            c1: (scale * 2.0 * (control - from)) as f32,
-            c2: (scale * (from - 2.0 * control + to)) as f32,
-            padding: 0.0,
-        }
+        let coefficients = [from, 2.0 * (control - from), from - 2.0 * control + to, 0.0];
+        coefficients.map(|c| (scale * c) as f32)
     })
 }
 
@@ -159,9 +156,8 @@ mod tests {
                 let scaled = t * pieces.len() as f64;
                 let index = (scaled as usize).min(pieces.len() - 1);
                 let x = scaled - index as f64;
-                let piece = pieces[index];
-                let value =
-                    f64::from(piece.c0) + x * (f64::from(piece.c1) + x * f64::from(piece.c2));
+                let [c0, c1, c2, _] = pieces[index].map(f64::from);
+                let value = c0 + x * (c1 + x * c2);
                 let expected = 0.5 * b_spline(&series, t);
                 assert!((value - expected).abs() < 1e-6, "{t}: {value} {expected}");
             }

@@ -1,7 +1,7 @@
 //! A line of light on the device (`cl/wave/source/cylinder.h`).
 
 
-use super::{Anchor, Pack, SplinePiece, device_struct, falloff, line, scene};
+use super::{Anchor, Pack, Rows, device_struct, falloff, line, scene};
 use super::layout::Falloff;
 use crate::scene::SourceKind;
 
@@ -20,7 +20,7 @@ device_struct! {
 impl Pack for scene::Cylinder {
     type Device = Cylinder;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Vec<SplinePiece>) -> Cylinder {
+    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Cylinder {
         let (point, direction) = line(anchor, self.point, self.direction);
         Cylinder {
             point: point.value,

@@ -96,16 +96,6 @@ device_struct! {
     }
 }
 
-device_struct! {
-    /// One piece of a quadratic B-spline.
-    SplinePiece [16] {
-        c0: f32 = 0,
-        c1: f32 = 4,
-        c2: f32 = 8,
-        padding: f32 = 12,
-    }
-}
-
 by_value!(View, Integrand, Launch, TilePass);
 
 macro_rules! list_structs {
@@ -120,7 +110,6 @@ macro_rules! list_structs {
             TilePass::LAYOUT,
             RayRecord::LAYOUT,
             Node::LAYOUT,
-            SplinePiece::LAYOUT,
             $(super::$kind::$Type::LAYOUT,)*
         ];
     };

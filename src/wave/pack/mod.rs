@@ -13,7 +13,6 @@ pub use view::{integrand, ray, view};
 use crate::opencl::device_struct;
 use crate::scene::kinds::{KIND_COUNT, for_each_kind};
 use crate::scene::{self, Falloff, Measure, Profile, Scene, SourcesStamp};
-use layout::SplinePiece;
 
 /// Where the float32 coordinates begin, how far the rays go from there, and what every emission is multiplied with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,13 +54,25 @@ pub fn even_decay(scene: &Scene) -> f64 {
     even.map_or(1.0, |decay| decay.alpha)
 }
 
+/// Four numbers of a list to which sources refer.
+pub type Row = [f32; 4];
+
+/// What sources have more than their struct holds: pieces of series, corners of paths.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Rows {
+    /// Of all sources.
+    pub list: Vec<Row>,
+    /// Whether there are series among them.
+    pub has_series: bool,
+}
+
 /// What the packing asks of every kind of source.
 trait Pack {
     /// The kind's struct on the device.
     type Device;
 
-    /// Packs the source; a series over its core's parameter goes to `pieces`.
-    fn pack(&self, anchor: &Anchor, pieces: &mut Vec<SplinePiece>) -> Self::Device;
+    /// Packs the source; what its struct does not hold goes to `rows`.
+    fn pack(&self, anchor: &Anchor, rows: &mut Rows) -> Self::Device;
 }
 
 macro_rules! define_sources {
@@ -72,8 +83,8 @@ macro_rules! define_sources {
         #[derive(Debug, Clone, Default, PartialEq)]
         pub struct Sources {
             $($(#[$doc])* pub $list: Vec<$kind::$Type>,)*
-            /// Pieces of all sources' series.
-            pub spline_pieces: Vec<SplinePiece>,
+            /// What they refer to.
+            pub rows: Rows,
         }
 
         impl Sources {
@@ -86,11 +97,12 @@ macro_rules! define_sources {
 
             /// Packs all sources of a valid scene in the place of those that were there.
             pub fn fill(&mut self, scene: &Scene, anchor: &Anchor) {
-                let pieces = &mut self.spline_pieces;
-                pieces.clear();
+                let rows = &mut self.rows;
+                rows.list.clear();
+                rows.has_series = false;
                 $(
                     self.$list.clear();
-                    self.$list.extend(scene.$list.iter().map(|it| it.pack(anchor, pieces)));
+                    self.$list.extend(scene.$list.iter().map(|it| it.pack(anchor, rows)));
                 )*
             }
 

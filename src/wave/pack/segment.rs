@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Anchor, Pack, SplinePiece, device_struct, falloff, line, scene};
+use super::{Anchor, Pack, Rows, device_struct, falloff, line, scene};
 use super::layout::Falloff;
 use crate::scene::SourceKind;
 
@@ -25,7 +25,7 @@ device_struct! {
 impl Pack for scene::Segment {
     type Device = Segment;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Vec<SplinePiece>) -> Segment {
+    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Segment {
         // Any direction will do for a point: its whole line is beyond its ends.
         let direction = (self.to - self.from).try_normalize().unwrap_or(DVec3::X);
         let (from, to) = (anchor.position(self.from), anchor.position(self.to));

@@ -1,7 +1,7 @@
 //! A point of light on the device (`cl/wave/source/sphere.h`).
 
 
-use super::{Anchor, Pack, SplinePiece, device_struct, falloff, scene};
+use super::{Anchor, Pack, Rows, device_struct, falloff, scene};
 use super::layout::Falloff;
 use crate::scene::SourceKind;
 
@@ -18,7 +18,7 @@ device_struct! {
 impl Pack for scene::Sphere {
     type Device = Sphere;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Vec<SplinePiece>) -> Sphere {
+    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Sphere {
         let center = anchor.position(self.center);
         Sphere {
             center: center.value,

@@ -2,7 +2,7 @@
 
 use bytemuck::Zeroable;
 
-use super::{Anchor, Pack, SplinePiece, device_struct, fine, falloff, rest, scene};
+use super::{Anchor, Pack, Rows, device_struct, fine, falloff, rest, scene};
 use super::layout::Falloff;
 use crate::scene::SourceKind;
 
@@ -25,7 +25,7 @@ device_struct! {
 impl Pack for scene::Torus {
     type Device = Torus;
 
-    fn pack(&self, anchor: &Anchor, _: &mut Vec<SplinePiece>) -> Torus {
+    fn pack(&self, anchor: &Anchor, _: &mut Rows) -> Torus {
         let (center, axis) = (anchor.position(self.center), fine(self.axis.normalize()));
         Torus {
             center: center.value,

@@ -30,7 +30,7 @@ typedef struct {
     float velocity_along, velocity_across, bend, vertex;
     float inverse_speed2; // 1 / |C'(1/2)|^2, 0 for a point
     uint is_straight, spline_count;
-    __global const SplinePiece *pieces;
+    __global const float4 *pieces;
     Profile profile;
 } curve_path;
 
@@ -48,7 +48,7 @@ INLINE curve_path curve_along(const Ray *const ray, const Sources *const sources
     path.vertex = curve->vertex;
     path.is_straight = curve->is_straight;
     path.spline_count = curve->spline_count;
-    path.pieces = sources->spline_pieces + curve->spline_begin;
+    path.pieces = sources->rows + curve->spline_begin;
     path.profile = profile_of(ray, &curve->falloff);
 
     // From |C2|^2 (2 u^3) + (velocity^2 - 2 bend Y) u - velocity X = 0, (X, Y) = P from the parabola's vertex.
