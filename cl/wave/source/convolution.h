@@ -50,22 +50,47 @@ typedef struct {
     floatv end; // of the ray
 } convolution_peaks;
 
-// Cuts the ray at the planes through the ends, and between them where it comes closest to the line.
+// Returns how far a panel is from where a squared distance is 0, squared.
+floatv distance2_to_zero(const Quadratic *const q, const floatv from, const floatv to) {
+    const floatv per_slope = inverse(max(q->slope, 1e-18f));
+    const floatv beyond = min(fabs(q->nearest - clamp(q->nearest, from, to)), 1e15f);
+    return fma(beyond, beyond, min(q->least * per_slope, 1e30f * q->slope) * per_slope);
+}
+
+// Where the field peaks, as seen from a panel: next to the line between the ends, or next to one of them.
+typedef struct {
+    floatv s; // the real part
+    intv is_last, is_line;
+} Nearest;
+
+INLINE Nearest nearest_of_piece(const ConvolvedPiece *const piece, const floatv from, const floatv to) {
+    const floatv to_first = distance2_to_zero(&piece->to_first, from, to);
+    const floatv to_last = distance2_to_zero(&piece->to_last, from, to);
+    const floatv to_line = distance2_to_zero(&piece->to_line, from, to);
+    const floatv foot = clamp(piece->to_line.nearest, from, to);
+    const intv is_between =
+        (height_at(&piece->over_first, foot) >= 0.0f) & (height_at(&piece->over_last, foot) <= 0.0f);
+    Nearest nearest;
+    nearest.is_last = to_last < to_first;
+    nearest.is_line = is_between & (to_line < min(to_first, to_last));
+    nearest.s = select(select(piece->to_first.nearest, piece->to_last.nearest, nearest.is_last), piece->to_line.nearest,
+                       nearest.is_line);
+    return nearest;
+}
+
+// Cuts the ray where it comes closest to the piece: next to where a squared distance is 0.
 INLINE uint convolution_panels(const convolution_peaks *const peaks, const Quadrature *const quadrature,
                                floatv *const from, floatv *const to, floatv *const integral) {
-    const ConvolvedPiece *const piece = &peaks->piece;
     floatv end = peaks->end;
 #ifdef FADING
     end = min(end, darkness(quadrature->decay));
 #endif
-    const floatv a = climbs_through(&piece->over_first, end).s, b = climbs_through(&piece->over_last, end).s;
+    const Nearest nearest = nearest_of_piece(&peaks->piece, splat(0.0f), end);
     to[0] = end;
-    to[1] = from[0] = max(a, b);
-    to[3] = from[2] = min(a, b);
-    to[2] = from[1] = clamp(piece->to_line.nearest, to[3], from[0]);
-    from[3] = splat(0.0f);
+    to[1] = from[0] = clamp(nearest.s, 0.0f, end);
+    from[1] = splat(0.0f);
     *integral = splat(0.0f);
-    return 4;
+    return 2;
 }
 
 // A squared distance beside a point of the ray: (ahead + slope x)^2 + least.
@@ -89,26 +114,12 @@ typedef struct {
     float length;
 } convolution_near;
 
-// Returns how far a panel is from where a squared distance is 0, squared.
-floatv distance2_to_zero(const Quadratic *const q, const floatv from, const floatv to) {
-    const floatv per_slope = inverse(max(q->slope, 1e-18f));
-    const floatv beyond = min(fabs(q->nearest - clamp(q->nearest, from, to)), 1e15f);
-    return fma(beyond, beyond, min(q->least * per_slope, 1e30f * q->slope) * per_slope);
-}
-
 INLINE convolution_near convolution_approach(const convolution_peaks *const peaks, const floatv from, const floatv to,
                                              Peak *const peak, floatv *const base) {
     const ConvolvedPiece *const piece = &peaks->piece;
-    const floatv to_first = distance2_to_zero(&piece->to_first, from, to);
-    const floatv to_last = distance2_to_zero(&piece->to_last, from, to);
-    const floatv to_line = distance2_to_zero(&piece->to_line, from, to);
-    const floatv foot = clamp(piece->to_line.nearest, from, to);
-    const intv is_between =
-        (height_at(&piece->over_first, foot) >= 0.0f) & (height_at(&piece->over_last, foot) <= 0.0f);
-    const intv is_last = to_last < to_first, is_line = is_between & (to_line < min(to_first, to_last));
-    const floatv nearest =
-        select(select(piece->to_first.nearest, piece->to_last.nearest, is_last), piece->to_line.nearest, is_line);
-    *base = clamp(nearest, from, to);
+    const Nearest nearest = nearest_of_piece(piece, from, to);
+    const intv is_last = nearest.is_last, is_line = nearest.is_line;
+    *base = clamp(nearest.s, from, to);
     convolution_near near;
     near.to_line = quadratic_beside(&piece->to_line, *base);
     near.to_first = quadratic_beside(&piece->to_first, *base);
