@@ -169,6 +169,8 @@ impl Wave {
             origin,
             reach,
             measure: pack::even_decay(scene),
+            pixel: 0.0,
+            tolerance: scene.integration.method.tolerance(),
         };
         let stamp = self.packed.pack(scene, anchor);
         let task = self.task(scene, Rays::Listed, FilmFormat::Floats);

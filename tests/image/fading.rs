@@ -4,8 +4,8 @@
 use energywave::image::DepthAlong;
 use energywave::internals::{Integrand, Source, exact, integrate, sources};
 use energywave::scene::{
-    Absorption, Beam, Curve, Cylinder, Decay, Method, Profile, Ray, Sampling, Segment, Sphere,
-    Torus,
+    Absorption, Beam, Curve, Cylinder, Decay, LightPath, Method, PathShape, Profile, Ray, Sampling,
+    Segment, Sphere, Torus,
 };
 use energywave::{Renderer, Scene, reference};
 use glam::DVec3;
@@ -70,6 +70,11 @@ fn every_kind(profile: Profile, radius: f64, reach: Option<f64>) -> Scene {
         DVec3::new(0.9, -0.4, 0.1),
     ]));
     scene.segments.push(Segment::new(-DVec3::X, DVec3::X));
+    let corners = [[-0.8, 0.5, -0.2], [0.1, -0.4, 0.3], [0.8, 0.3, 0.5]];
+    scene.paths.push(LightPath {
+        shape: PathShape::Polyline,
+        ..LightPath::new(corners.map(DVec3::from).to_vec())
+    });
     macro_rules! set {
         ($($list:ident),*) => {
             $(for source in &mut *scene.$list {
@@ -77,7 +82,7 @@ fn every_kind(profile: Profile, radius: f64, reach: Option<f64>) -> Scene {
             })*
         };
     }
-    set!(spheres, cylinders, beams, tori, curves, segments);
+    set!(spheres, cylinders, beams, tori, curves, segments, paths);
     scene
 }
 
@@ -210,7 +215,7 @@ fn every_kind_meets_every_tolerance_and_other_fadings_do_not() {
 fn hidden(fading: (Option<Decay>, Option<Absorption>), size: u32) -> Scene {
     let mut scene = faded(&every_kind(Profile::Inverse, 0.02, None), fading);
     (scene.image.width, scene.image.height) = (size, size);
-    (scene.beams, scene.cylinders, scene.curves) = Default::default();
+    (scene.beams, scene.cylinders, scene.curves, scene.paths) = Default::default();
     scene.integration.method = Method::default();
     let distance = scene.camera.eye.length();
     scene.depth = Some(common::depths(
@@ -259,7 +264,7 @@ fn what_does_not_fade_light_changes_no_bit() {
     let mut renderer = renderer(common::device().lanes, "");
     let mut draw = |fading| {
         let mut scene = faded(&every_kind(Profile::Inverse, 0.0, None), fading);
-        (scene.curves, scene.beams, scene.tori, scene.cylinders) = Default::default();
+        (scene.curves, scene.beams, scene.tori, scene.paths) = Default::default();
         scene.integration.method = common::by(Sampling::Pixels);
         renderer.render(&scene).unwrap()
     };

@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{Brightness, Core, Falloff, Light, Profile, SourceKind, item, one, white};
-use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
+use crate::scene::values::{Checked, Fault, finite, read_vector, read_vectors, vector};
 
 /// A quadratic Bezier curve of light: `S(t*)/d`, or by its [`Profile`] `S(t*)/d^2`, d the distance to its nearest point
 /// `C(t*)`, `S(t*)` the local intensity there (2015, eq. 8-17).
@@ -125,11 +125,8 @@ impl SourceKind for Curve {
 
 /// Reads exactly three control points.
 fn three_points<'de, D: Deserializer<'de>>(reader: D) -> Result<[DVec3; 3], D::Error> {
-    #[derive(Deserialize)]
-    struct Point(#[serde(deserialize_with = "read_vector")] DVec3);
-    let points = Vec::<Point>::deserialize(reader)?;
+    let points = read_vectors(reader)?;
     let found = points.len();
-    let points: Vec<DVec3> = points.into_iter().map(|point| point.0).collect();
     points.try_into().map_err(|_| {
         serde::de::Error::custom(format!(
             "a quadratic curve has three control points, found {found}"

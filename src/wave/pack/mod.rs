@@ -23,6 +23,10 @@ pub struct Anchor {
     pub reach: f64,
     /// `|E - S|` where light is measured by length, else 1; times a decay that is the same everywhere.
     pub measure: f64,
+    /// How large a pixel is, as a share of the distance from the origin; 0 where there are none.
+    pub pixel: f64,
+    /// Relative error aimed at.
+    pub tolerance: f64,
 }
 
 impl Anchor {
@@ -36,6 +40,8 @@ impl Anchor {
             origin,
             reach,
             measure: measure * even_decay(scene),
+            pixel: pixel(scene),
+            tolerance: scene.integration.method.tolerance(),
         }
     }
 
@@ -52,6 +58,11 @@ impl Anchor {
 pub fn even_decay(scene: &Scene) -> f64 {
     let even = scene.decay.filter(|decay| decay.power == 0);
     even.map_or(1.0, |decay| decay.alpha)
+}
+
+/// Returns how large a pixel is, as a share of the distance from the eye.
+fn pixel(scene: &Scene) -> f64 {
+    2.0 * (0.5 * scene.camera.fov_y.to_radians()).tan() / f64::from(scene.image.height)
 }
 
 /// Four numbers of a list to which sources refer.
