@@ -17,6 +17,7 @@ const FILES: &[SourceFile<'static>] = embed!(
     "wave/quadrature/stretch.h",
     "wave/radiance.h",
     "wave/render.cl",
+    "wave/source/convolution.h",
     "wave/source/cubic.h",
     "wave/source/curve/field.h",
     "wave/source/curve/panels.h",

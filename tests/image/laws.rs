@@ -180,10 +180,9 @@ fn wild_scene(random: &mut fastrand::Rng) -> Scene {
     scene.camera.fov_y = 1.0 + 178.0 * random.f64();
     scene.camera.ray_length = Some(magnitude(random));
     scene.integration.method = Method::simpson(8);
-    scene.decay = random.bool().then(|| Decay {
-        alpha: magnitude(random),
-        beta: magnitude(random),
-    });
+    scene.decay = random
+        .bool()
+        .then(|| Decay::new(magnitude(random), magnitude(random)));
     let eye = scene.camera.eye;
     let place = |random: &mut fastrand::Rng| {
         if random.u8(..6) == 0 {

@@ -6,9 +6,12 @@ mod common;
 
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
+mod convolution; // holds light that adds up over a core to its definition
 mod defaults; // looks at a scene that names nothing
 mod depth; // compares occluded images with those of rays that are cut by hand
 mod exact; // holds the method `exact` to every tolerance
+mod fading; // fades light by every power, and absorbs it
+mod fading_forms; // holds the reference to closed forms of points and lines that fade
 mod figures; // draws every scene by every method in the form of the device
 mod hard_scenes; // takes the method `exact` through cores, along them, and to extreme numbers
 mod images; // bounds the worst pixel of the Simpson rule

@@ -150,10 +150,7 @@ fn rich_scenes() -> Vec<Scene> {
             width: 1 + index as u32,
             height: 16384 - index as u32,
         };
-        scene.decay = (index % 3 != 0).then(|| Decay {
-            alpha: number(random),
-            beta: number(random),
-        });
+        scene.decay = (index % 3 != 0).then(|| Decay::new(number(random), number(random)));
         scene.integration = Integration {
             method,
             measure: [Measure::Parameter, Measure::Length][index % 2],
