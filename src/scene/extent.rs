@@ -101,8 +101,8 @@ macro_rules! define_extent {
 for_each_kind!(define_extent);
 
 impl Scene {
-    /// Returns the length of every ray, `|E - S|`, world units: the camera's, or where it names none one that passes all
-    /// sources. That is, measured from the projection plane, 5 times as far as the target and the cores of sources
+    /// Returns the length of every ray, `|E - S|`, world units: the camera's, or where it names none one that passes
+    /// all sources. That is, measured from the projection plane, 5 times as far as the target and the cores of sources
     /// without a reach, and no less far than the light of those with one; at most 1e9. Cores are taken by the box around
     /// them, cylinders and beams by the point or tip that they name.
     #[must_use]
