@@ -36,8 +36,7 @@ impl Core {
         Self::Bezier([from, (from + to) / 2.0, to])
     }
 
-    /// Returns the lowest and the highest coordinates of its points; of a line without end those of the point by which it
-    /// is given.
+    /// Returns the lowest and the highest coordinates of its points; of a line without end those of its point.
     pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
         if let Self::Line { point, .. } = *self {
             return (point, point);
