@@ -66,6 +66,12 @@ typedef JOIN(uint, LANES) uintv;
 #endif
 #endif
 
+#if LANES == 1
+#define first_lane(v) (v)
+#else
+#define first_lane(v) ((v).s0)
+#endif
+
 // The same value in every lane.
 #define splat(value) ((floatv)(value))
 
@@ -153,10 +159,22 @@ floatv load_lanes(__global const float *const values) {
 #endif
 }
 
+// x86 processors of 512 bits do so in one instruction, which clang offers in OpenCL C too.
+#if !defined(PORTABLE_ROOTS) && defined(__has_builtin)
+#if LANES == 16 && defined(__AVX512F__)
+#if __has_builtin(__builtin_ia32_gathersiv16sf)
+#define gather_lanes(values, index)                                                                                    \
+    __builtin_ia32_gathersiv16sf(splat(0.0f), (const float *)(size_t)(values), index, (ushort)0xffff, 4)
+#endif
+#endif
+#endif
+
 // Loads one value for each lane, from places that need not be consecutive.
 floatv gather(__global const float *const values, const intv index) {
 #if LANES == 1
     return values[index];
+#elif defined(gather_lanes)
+    return gather_lanes(values, index);
 #else
     int at[LANES];
     float found[LANES];

@@ -128,8 +128,13 @@ INLINE Ray pixel_ray(const Screen *const screen, const uint first) {
     return ray;
 }
 
-// Returns L(s) - M, with M given in two parts. Panels that meet in s meet here too: s is not rounded again.
-INLINE fine3v fine_between(const Ray *const ray, const floatv s, const float4 m, const float4 m_rest) {
-    const fine3v from_m = fine_subtract3(ray->fine_origin, fine3(m, m_rest));
+// Returns L(s) - M. Panels that meet in s meet here too: s is not rounded again.
+INLINE fine3v fine_from(const Ray *const ray, const floatv s, const fine3v m) {
+    const fine3v from_m = fine_subtract3(ray->fine_origin, m);
     return fine_fma3(ray->fine_toward, fine_multiply(to_finev(s), to_finev(ray->stretch)), from_m);
+}
+
+// Returns the same, with M given in two parts.
+INLINE fine3v fine_between(const Ray *const ray, const floatv s, const float4 m, const float4 m_rest) {
+    return fine_from(ray, s, fine3(m, m_rest));
 }

@@ -21,6 +21,8 @@ macro_rules! for_each_kind {
             curve: Curve, curves;
             /// Finite lines of light.
             segment: Segment, segments;
+            /// Chains of light.
+            path: LightPath, paths;
         }
     };
 }

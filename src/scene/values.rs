@@ -111,6 +111,14 @@ pub(crate) fn read_some_vector<'de, D: Deserializer<'de>>(
     read_vector(reader).map(Some)
 }
 
+/// Reads a list of vectors.
+pub(crate) fn read_vectors<'de, D: Deserializer<'de>>(reader: D) -> Result<Vec<DVec3>, D::Error> {
+    #[derive(Deserialize)]
+    struct Vector(#[serde(deserialize_with = "read_vector")] DVec3);
+    let vectors = Vec::<Vector>::deserialize(reader)?;
+    Ok(vectors.into_iter().map(|vector| vector.0).collect())
+}
+
 /// Makes a reader's message about a key of the table that it reads; [`unnamed`] takes it apart again.
 pub(crate) fn named(key: &str, message: &str) -> String {
     format!("key `{key}`: {message}")

@@ -22,6 +22,7 @@ const FILES: &[SourceFile<'static>] = embed!(
     "wave/source/curve/panels.h",
     "wave/source/curve/peaks.h",
     "wave/source/names.h",
+    "wave/source/path/nearest.h",
     "wave/source/profile.h",
     "wave/source/quadratic.h",
     "wave/source/sources.h",

@@ -169,6 +169,8 @@ impl Wave {
             origin,
             reach,
             measure: 1.0,
+            pixel: 0.0,
+            tolerance: scene.integration.method.tolerance(),
         };
         let stamp = self.packed.pack(scene, anchor);
         let task = self.task(scene, Rays::Listed, FilmFormat::Floats);

@@ -97,6 +97,8 @@ pub const ANCHOR: Anchor = Anchor {
     origin: DVec3::ZERO,
     reach: 20.0,
     measure: 1.0,
+    pixel: 0.0,
+    tolerance: 1e-3,
 };
 
 /// Worst relative error of the inverse cube root over 60 powers of ten.

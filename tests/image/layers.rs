@@ -1,7 +1,9 @@
 //! Several lights of one core are, to the bit, as many sources: on the device and in the reference, for every kind.
 
 use energywave::image::ImageSize;
-use energywave::scene::{Curve, Layer, List, Measure, Method, Profile, Segment, Sphere};
+use energywave::scene::{
+    Curve, Layer, LightPath, List, Measure, Method, PathShape, Profile, Segment, Sphere,
+};
 use energywave::{Scene, reference};
 use glam::DVec3;
 
@@ -35,7 +37,7 @@ fn layers() -> Vec<Layer> {
 
 macro_rules! for_each_list {
     ($then:ident) => {
-        $then!(spheres, cylinders, beams, tori, curves, segments)
+        $then!(spheres, cylinders, beams, tori, curves, segments, paths)
     };
 }
 
@@ -83,9 +85,9 @@ fn apart(scene: &Scene) -> Scene {
 fn scenes() -> Vec<Scene> {
     let full = common::full_scene(SIZE, SIZE);
     let empty = || common::empty_scene(SIZE, SIZE);
-    let mut scenes: Vec<Scene> = (0..6).map(|_| empty()).collect();
-    let [spheres, cylinders, beams, tori, curves, segments] = &mut scenes[..] else {
-        unreachable!("six scenes");
+    let mut scenes: Vec<Scene> = (0..7).map(|_| empty()).collect();
+    let [spheres, cylinders, beams, tori, curves, segments, paths] = &mut scenes[..] else {
+        unreachable!("seven scenes");
     };
     spheres.spheres = full.spheres.clone();
     cylinders.cylinders = full.cylinders.clone();
@@ -94,6 +96,16 @@ fn scenes() -> Vec<Scene> {
     curves.curves = full.curves[..2].to_vec().into();
     let (from, to) = (DVec3::new(-1.0, 0.2, 0.1), DVec3::new(0.8, -0.3, 0.6));
     segments.segments.push(Segment::new(from, to));
+    let points = vec![
+        from,
+        DVec3::new(-0.2, 0.4, 0.9),
+        DVec3::new(0.3, 0.1, -0.5),
+        to,
+    ];
+    paths.paths.push(LightPath {
+        shape: PathShape::Spline,
+        ..LightPath::new(points)
+    });
     for scene in &mut scenes {
         scene.integration.method = Method::default();
         scene.integration.measure = Measure::Length;

@@ -74,12 +74,12 @@ floatv quadratic_at(const Quadratic *const q, const floatv s) {
     return fma(x, x, q->least);
 }
 
-// Returns the squared distance from a ray to a point, doubled, with the softening of a profile.
-INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, const float4 point_rest,
-                                    const floatv softening2) {
-    const float3v from_point = subtract3(ray->origin, uniform3(point));
+// Returns the squared distance from a ray to a point of each lane, doubled, with the softening of a profile.
+INLINE Quadratic distance2_to_points(const Ray *const ray, const float3v point, const fine3v fine_point,
+                                     const floatv softening2) {
+    const float3v from_point = subtract3(ray->origin, point);
     Quadratic distance2 = squared_length_along(from_point, ray->span, ray->length);
-    const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
+    const fine3v closest = fine_from(ray, distance2.nearest, fine_point);
     refine(&distance2, from_fine3(closest), ray->span);
 #ifdef SHAPES
     refine_bare(&distance2, closest);
@@ -87,31 +87,51 @@ INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, co
     return doubled(distance2, softening2);
 }
 
+// Returns the same for a point that is that of all lanes.
+INLINE Quadratic distance2_to_point(const Ray *const ray, const float4 point, const float4 point_rest,
+                                    const floatv softening2) {
+    return distance2_to_points(ray, uniform3(point), fine3(point, point_rest), softening2);
+}
+
 // The sine of the angle between a ray and a line below which float32 has too few digits of it.
 #define ALONG 0.03f
 
-// Returns the squared distance from a ray to a line. The distance of P is |(P - M) x D|, a cross product instead of the
-// difference of squares that Watanabe, Abe, Konno 2015, eq. 3 prints, which cancels near the line.
-INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, const float4 point_rest,
-                                   const float4 direction, const float4 direction_rest, const floatv softening2) {
-    const float3v along = uniform3(direction);
-    const fine3v fine_along = fine3(direction, direction_rest);
-    const float3v from_point = subtract3(ray->origin, uniform3(point));
+// Returns the squared distance from a ray to a line of each lane. The distance of P is |(P - M) x D|, a cross product
+// instead of the difference of squares that Watanabe, Abe, Konno 2015, eq. 3 prints, which cancels near the line.
+INLINE Quadratic distance2_to_lines(const Ray *const ray, const float3v point, const fine3v fine_point,
+                                    const float3v along, const fine3v fine_along, const floatv softening2) {
+    const float3v from_point = subtract3(ray->origin, point);
     float3v start = cross3(from_point, along), span = cross3(ray->span, along);
     // Of a ray along the line float32 leaves nothing but noise.
     const intv is_along = dot3(span, span) < ALONG * ALONG * ray->length * ray->length;
     if (any_lane(is_along)) {
-        const fine3v fine_start = fine_between(ray, splat(0.0f), point, point_rest);
+        const fine3v fine_start = fine_from(ray, splat(0.0f), fine_point);
         start = select3(start, from_fine3(fine_cross3(fine_start, fine_along)), is_along);
         const float3v turned = scale3(from_fine3(fine_cross3(ray->fine_toward, fine_along)), ray->stretch);
         span = select3(span, turned, is_along);
     }
     Quadratic distance2 = squared_length_along(start, span, length3(span));
-    const fine3v closest = fine_between(ray, distance2.nearest, point, point_rest);
+    const fine3v closest = fine_from(ray, distance2.nearest, fine_point);
     const fine3v beside = fine_cross3(closest, fine_along);
     refine(&distance2, from_fine3(beside), span);
 #ifdef SHAPES
     refine_bare(&distance2, beside);
 #endif
     return doubled(distance2, softening2);
+}
+
+// Returns the same for a line that is that of all lanes.
+INLINE Quadratic distance2_to_line(const Ray *const ray, const float4 point, const float4 point_rest,
+                                   const float4 direction, const float4 direction_rest, const floatv softening2) {
+    return distance2_to_lines(ray, uniform3(point), fine3(point, point_rest), uniform3(direction),
+                              fine3(direction, direction_rest), softening2);
+}
+
+INLINE Quadratic select_quadratic(const Quadratic a, const Quadratic b, const intv is_b) {
+    Quadratic q = {select(a.slope, b.slope, is_b), select(a.offset, b.offset, is_b), select(a.least, b.least, is_b),
+                   select(a.nearest, b.nearest, is_b), select(a.ahead, b.ahead, is_b)};
+#ifdef SHAPES
+    q.bare = select(a.bare, b.bare, is_b), q.bare_rest = select(a.bare_rest, b.bare_rest, is_b);
+#endif
+    return q;
 }

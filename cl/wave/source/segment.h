@@ -54,15 +54,6 @@ floatv segment_field(const segment_path *const path, const floatv s) {
     return field_at(&path->profile, distance2);
 }
 
-INLINE Quadratic segment_select(const Quadratic a, const Quadratic b, const intv is_b) {
-    Quadratic q = {select(a.slope, b.slope, is_b), select(a.offset, b.offset, is_b), select(a.least, b.least, is_b),
-                   select(a.nearest, b.nearest, is_b), select(a.ahead, b.ahead, is_b)};
-#ifdef SHAPES
-    q.bare = select(a.bare, b.bare, is_b), q.bare_rest = select(a.bare_rest, b.bare_rest, is_b);
-#endif
-    return q;
-}
-
 PER_RAY_IF_WIDE floatv segment_integral(const Ray *const ray, const Sources *const sources, const uint index,
                                         const Quadrature *const quadrature) {
     const segment_path path = segment_along(ray, sources, index);
@@ -77,8 +68,8 @@ PER_RAY_IF_WIDE floatv segment_integral(const Ray *const ray, const Sources *con
     const intv is_last_first = at_last.s < at_first.s;
     const Cut enters = select_cut(at_first, at_last, is_last_first),
               leaves = select_cut(at_last, at_first, is_last_first);
-    const Quadratic to_near = segment_select(path.to_first, path.to_last, is_falling);
-    const Quadratic to_far = segment_select(path.to_last, path.to_first, is_falling);
+    const Quadratic to_near = select_quadratic(path.to_first, path.to_last, is_falling);
+    const Quadratic to_far = select_quadratic(path.to_last, path.to_first, is_falling);
     return integral_over(between(cut_at(splat(0.0f)), enters), &to_near, &path.profile, quadrature) +
            integral_over(between(enters, leaves), &path.to_line, &path.profile, quadrature) +
            integral_over(between(leaves, cut_at(ray->end)), &to_far, &path.profile, quadrature);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// The core of a source.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Core {
     /// A quadratic Bezier curve, which may be straight, or one point.
     Bezier([DVec3; 3]),
@@ -20,6 +20,8 @@ pub(crate) enum Core {
         axis: DVec3,
         radius: f64,
     },
+    /// Straight lines from corner to corner; of a curved path roughly.
+    Chain(Vec<DVec3>),
 }
 
 /// Pieces of a curve in which its least distance is sought.
@@ -38,8 +40,8 @@ impl Core {
 
     /// Returns the lowest and the highest coordinates of its points; of a line without end those of its point.
     pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
-        if let Self::Line { point, .. } = *self {
-            return (point, point);
+        if let Self::Line { point, .. } = self {
+            return (*point, *point);
         }
         let reach = |sign: f64| DVec3::from(DVec3::AXES.map(|axis| self.reach(sign * axis)));
         (-reach(-1.0), reach(1.0))
@@ -48,6 +50,10 @@ impl Core {
     /// Returns how far it reaches in a direction of length 1, from the origin; infinite for a line that goes on.
     pub(crate) fn reach(&self, direction: DVec3) -> f64 {
         match *self {
+            Self::Chain(ref corners) => {
+                let along = corners.iter().map(|corner| corner.dot(direction));
+                along.fold(f64::NEG_INFINITY, f64::max)
+            }
             Self::Bezier(points) => {
                 let [a, b, c] = points.map(|point| point.dot(direction));
                 // Where the derivative of (1-t)^2 a + 2t(1-t) b + t^2 c is 0.
@@ -78,6 +84,17 @@ impl Core {
     /// less.
     pub(crate) fn least_distance(&self, from: DVec3) -> f64 {
         match *self {
+            Self::Chain(ref corners) => {
+                let distances = corners.windows(2).map(|pair| {
+                    let span = pair[1] - pair[0];
+                    let share = (from - pair[0]).dot(span) / span.length_squared();
+                    from.distance(pair[0] + span * share.clamp(0.0, 1.0))
+                });
+                let first = corners
+                    .first()
+                    .map_or(f64::INFINITY, |it| it.distance(from));
+                distances.fold(first, f64::min)
+            }
             Self::Bezier(points) => {
                 let [a, b, c] = points;
                 let speed = 2.0 * (b - a).length().max((c - b).length());

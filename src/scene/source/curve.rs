@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, item, source, source_struct};
-use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
+use crate::scene::values::{Checked, Fault, finite, read_vectors, vector};
 
 source_struct! {
     /// A quadratic Bezier curve of light: `S(t*)/d`, or by its [`Profile`] `S(t*)/d^2`, d the distance to its nearest
@@ -95,11 +95,8 @@ impl SourceKind for Curve {
 
 /// Reads exactly three control points.
 fn three_points<'de, D: Deserializer<'de>>(reader: D) -> Result<[DVec3; 3], D::Error> {
-    #[derive(Deserialize)]
-    struct Point(#[serde(deserialize_with = "read_vector")] DVec3);
-    let points = Vec::<Point>::deserialize(reader)?;
+    let points = read_vectors(reader)?;
     let found = points.len();
-    let points: Vec<DVec3> = points.into_iter().map(|point| point.0).collect();
     points.try_into().map_err(|_| {
         serde::de::Error::custom(format!(
             "a quadratic curve has three control points, found {found}"

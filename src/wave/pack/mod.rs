@@ -23,6 +23,10 @@ pub struct Anchor {
     pub reach: f64,
     /// `|E - S|` where light is measured by length, else 1.
     pub measure: f64,
+    /// How large a pixel is, as a share of the distance from the origin; 0 where there are none.
+    pub pixel: f64,
+    /// Relative error aimed at.
+    pub tolerance: f64,
 }
 
 impl Anchor {
@@ -36,6 +40,8 @@ impl Anchor {
             origin,
             reach,
             measure,
+            pixel: pixel(scene),
+            tolerance: scene.integration.method.tolerance(),
         }
     }
 
@@ -46,6 +52,11 @@ impl Anchor {
     fn emission(&self, coefficient: f64, color: DVec3) -> [f32; 4] {
         vector(color * (coefficient * self.measure))
     }
+}
+
+/// Returns how large a pixel is, as a share of the distance from the eye.
+fn pixel(scene: &Scene) -> f64 {
+    2.0 * (0.5 * scene.camera.fov_y.to_radians()).tan() / f64::from(scene.image.height)
 }
 
 /// Four numbers of a list to which sources refer.
