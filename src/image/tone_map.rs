@@ -6,8 +6,7 @@ use super::{DisplayImage, RadianceImage};
 use crate::threads;
 
 /// How linear radiance becomes an 8-bit picture.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Display {
     /// Exposure in stops: radiance times `2^exposure`.
     pub exposure: f64,
@@ -15,23 +14,15 @@ pub struct Display {
     pub tone_map: ToneMap,
 }
 
-impl Default for Display {
-    fn default() -> Self {
-        Self {
-            exposure: 0.0,
-            tone_map: ToneMap::Exponential,
-        }
-    }
-}
-
 /// A tone-mapping curve, applied to each channel `L` of exposed radiance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum ToneMap {
     /// `min(L, 1)`.
     Clamp,
     /// `1 - exp(-L)`.
+    #[default]
     Exponential,
     /// `L / (1 + L)` (Reinhard et al. 2002).
     Reinhard,

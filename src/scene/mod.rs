@@ -7,6 +7,7 @@
 mod camera;
 #[cfg(feature = "files")]
 mod depth_report;
+mod exposure;
 mod extent;
 #[cfg(feature = "files")]
 mod file;

@@ -104,19 +104,19 @@ pub(crate) fn read_vector<'de, D: Deserializer<'de>>(reader: D) -> Result<DVec3,
     Ok(numbers.into())
 }
 
-/// Reads three numbers for a key that may be absent.
-pub(crate) fn read_some_vector<'de, D: Deserializer<'de>>(
-    reader: D,
-) -> Result<Option<DVec3>, D::Error> {
-    read_vector(reader).map(Some)
-}
-
 /// Reads a list of vectors.
 pub(crate) fn read_vectors<'de, D: Deserializer<'de>>(reader: D) -> Result<Vec<DVec3>, D::Error> {
     #[derive(Deserialize)]
     struct Vector(#[serde(deserialize_with = "read_vector")] DVec3);
     let vectors = Vec::<Vector>::deserialize(reader)?;
     Ok(vectors.into_iter().map(|vector| vector.0).collect())
+}
+
+/// Reads three numbers for a key that may be absent.
+pub(crate) fn read_some_vector<'de, D: Deserializer<'de>>(
+    reader: D,
+) -> Result<Option<DVec3>, D::Error> {
+    read_vector(reader).map(Some)
 }
 
 /// Makes a reader's message about a key of the table that it reads; [`unnamed`] takes it apart again.

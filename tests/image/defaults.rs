@@ -31,6 +31,7 @@ fn the_smallest_scene_is_a_bright_line_in_a_faint_halo() {
     let mut in_code = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
     in_code.image = scene.image;
     in_code.tori.push(Torus::new(1.0));
+    in_code.display.exposure = in_code.fitting_exposure();
     assert_eq!(in_code, scene);
     let shares = |scene: &Scene| {
         let shown = draw(scene).tone_map(&scene.display);
@@ -40,6 +41,12 @@ fn the_smallest_scene_is_a_bright_line_in_a_faint_halo() {
         };
         (count(|value| value > 160), count(|value| value < 120))
     };
+    let brighter = |times: f64| {
+        let mut scene = scene.clone();
+        scene.tori[0].coefficient *= times;
+        scene.fitting_exposure()
+    };
+    assert!((brighter(8.0) - brighter(1.0) + 3.0).abs() < 1e-12);
     let is_kept = |(bright, dark): (f64, f64)| (0.02..0.2).contains(&bright) && dark > 0.6;
     assert!(is_kept(shares(&scene)), "{:?}", shares(&scene));
     // What the papers leave is fog.

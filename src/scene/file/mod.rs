@@ -1,6 +1,7 @@
 //! Reads a scene from TOML or JSON; every fault is reported with file, line, column and key.
 
 mod depth;
+mod display;
 mod groups;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
@@ -24,6 +25,7 @@ use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
 use depth::DepthTable;
+use display::DisplayTable;
 use groups::{GroupTable, Groups};
 use scan::UNIT_COUNT;
 
@@ -47,7 +49,7 @@ macro_rules! define_scene_file {
             #[serde(default)]
             integration: IntegrationTable,
             #[serde(default)]
-            display: Display,
+            display: DisplayTable,
             #[serde(default, skip_serializing_if = "Option::is_none")]
             depth: Option<DepthTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
@@ -72,7 +74,7 @@ macro_rules! define_scene_file {
                     image: self.image,
                     decay: self.decay,
                     integration: self.integration.integration(),
-                    display: self.display,
+                    display: self.display.display(),
                     depth: None,
                     $($list: std::mem::take(&mut self.$kind),)*
                 }
@@ -109,7 +111,7 @@ macro_rules! define_scene_file {
                     image: scene.image,
                     decay: scene.decay,
                     integration: IntegrationTable::of(&scene.integration),
-                    display: scene.display,
+                    display: DisplayTable::of(&scene.display),
                     depth,
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
@@ -245,6 +247,7 @@ impl SceneFile {
             .map_err(|fault| fault.of("integration"))?;
         let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
         groups.check(&scene)?;
+        self.display.fit_exposure(&mut scene);
         adjust(&mut scene, &self.integration.keys())?;
         if let (Some(depth), None) = (&self.depth, &scene.depth) {
             scene.depth = Some(depth.open(folder)?);

@@ -67,7 +67,7 @@ impl Falloff {
 
     /// Returns the light of a ray straight across a core of coefficient 1, measured by length; infinite where it has
     /// no limit.
-    fn light_across(&self) -> f64 {
+    pub(crate) fn light_across(&self) -> f64 {
         let Self {
             profile,
             radius,

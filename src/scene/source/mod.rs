@@ -144,13 +144,12 @@ fn item(list: &str, index: usize) -> Cow<'static, str> {
     format!("{list}[{index}]").into()
 }
 
-/// A coefficient with which a ring of radius 1, seen from 4 away, is a bright line in a faint halo.
-fn faint() -> f64 {
-    0.01
-}
-
 fn plus_z() -> DVec3 {
     DVec3::Z
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 fn white() -> DVec3 {

@@ -135,7 +135,7 @@ impl LightPath {
         let step = self.shape.step();
         let pieces = match self.closed {
             true => count / step,
-            false => count.saturating_sub(1) / step,
+            false => (count - 1) / step,
         };
         let point = |k: usize| self.points[k % count];
         let piece = |i: usize| {
@@ -234,7 +234,9 @@ impl SourceKind for LightPath {
     }
 
     fn move_core(&mut self, place: &Placement) {
-        self.points.iter_mut().for_each(|point| *point = place.point(*point));
+        for point in &mut self.points {
+            *point = place.point(*point);
+        }
         self.flatness = self.flatness.map(|flatness| place.scale * flatness);
     }
 

@@ -13,8 +13,8 @@ macro_rules! source_struct {
         $(#[$attribute])*
         $visibility struct $Type {
             $($fields)*
-            /// The papers' energy coefficient; of a beam that of its line. 0.01 unless it is named.
-            #[serde(default = "crate::scene::source::faint")]
+            /// The papers' energy coefficient; of a beam that of its line.
+            #[serde(default = "crate::scene::source::one")]
             pub coefficient: f64,
             /// Linear RGB.
             #[serde(
@@ -104,7 +104,7 @@ pub(crate) struct Shared<'a> {
 impl Default for Shared<'_> {
     fn default() -> Self {
         Self {
-            coefficient: super::faint(),
+            coefficient: super::one(),
             color: super::white(),
             profile: Profile::default(),
             radius: 0.0,
@@ -156,13 +156,18 @@ impl<'a> Shared<'a> {
         }
     }
 
+    /// Returns whether some light says by its peak how bright it is.
+    pub(crate) fn has_peak(&self) -> bool {
+        self.peak.is_some() || self.layers.iter().any(|layer| layer.peak.is_some())
+    }
+
     /// Returns how many lights they make.
     pub(crate) fn light_count(&self) -> usize {
         self.layers.len().max(1)
     }
 
     /// Returns all lights that they make: one, or that of each layer.
-    fn lights(self) -> impl Iterator<Item = Light> + 'a {
+    pub(crate) fn lights(self) -> impl Iterator<Item = Light> + 'a {
         let own = self.layers.is_empty().then(|| self.light());
         let layers = self.layers.iter();
         own.into_iter()

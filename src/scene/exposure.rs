@@ -1,0 +1,66 @@
+//! The exposure of a scene that names none, from what it says of its sources.
+
+use super::kinds::for_each_kind;
+use super::source::{Falloff, HasLight, Shared};
+use super::{Measure, Scene};
+
+/// So far from a core, as a share of the picture's height, light is shown at about two thirds of white.
+const HALO: f64 = 0.008;
+
+macro_rules! define_all_shared {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        impl Scene {
+            fn for_each_shared(&self, visit: &mut dyn FnMut(Shared<'_>)) {
+                $(self.$list.iter().for_each(|source| visit(source.shared()));)*
+            }
+        }
+    };
+}
+for_each_kind!(define_all_shared);
+
+impl Scene {
+    /// Returns the exposure, stops, that a scene file gets which names none. With it the light of the brightest source
+    /// is 1 beside its core, 0.008 of the picture's height away as far off as the target: cores are white and the
+    /// background is dark, whatever coefficients and the scale of the world are. 0 for a scene with a decay, or with a
+    /// source that says by its peak how bright it is.
+    #[must_use]
+    pub fn fitting_exposure(&self) -> f64 {
+        let camera = &self.camera;
+        let height =
+            2.0 * camera.eye.distance(camera.target) * (0.5 * camera.fov_y.to_radians()).tan();
+        let mut brightest: f64 = 0.0;
+        let mut has_peak = self.decay.is_some();
+        self.for_each_shared(&mut |source| {
+            has_peak |= source.has_peak();
+            for light in source.lights() {
+                let beside = beside(light.falloff, HALO * height, self.ray_length());
+                brightest = brightest.max(light.emission().abs().max_element() * beside);
+            }
+        });
+        let measure = match self.integration.measure {
+            Measure::Length => 1.0,
+            Measure::Parameter => self.ray_length(),
+        };
+        match measure / brightest {
+            times if has_peak || !times.is_normal() => 0.0,
+            times => times.log2().clamp(-100.0, 100.0),
+        }
+    }
+}
+
+/// Returns the light of a ray that passes a core of coefficient 1 at a distance, measured by length.
+fn beside(falloff: Falloff, distance: f64, ray_length: f64) -> f64 {
+    let wider = Falloff {
+        radius: falloff.radius.hypot(distance),
+        reach: falloff.reach.map(|reach| reach.max(2.0 * distance)),
+        ..falloff
+    };
+    match wider.light_across() {
+        light if light.is_finite() => light,
+        _ => Falloff {
+            reach: Some(ray_length.max(2.0 * wider.radius)),
+            ..wider
+        }
+        .light_across(),
+    }
+}
