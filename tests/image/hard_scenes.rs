@@ -74,6 +74,7 @@ fn hard_views() -> Vec<(&'static str, Scene)> {
     let view = |eye: [f64; 3], target: [f64; 3]| {
         let mut scene = common::empty_scene(24, 24);
         (scene.camera.eye, scene.camera.target) = (eye.into(), target.into());
+        scene.camera.ray_length = Some(common::far_beyond_target(&scene.camera));
         scene.integration.method = Method::default();
         scene
     };

@@ -133,6 +133,7 @@ fn a_moved_turned_and_scaled_scene_gives_the_same_image() {
     for scale in [1e-4, 1e4] {
         let mut scaled = mapped(&scene, |v| v * scale);
         scaled.camera.near *= scale;
+        scaled.camera.ray_length = scaled.camera.ray_length.map(|length| length * scale);
         scaled.tori.iter_mut().for_each(|t| t.major_radius *= scale);
         for beam in scaled.beams.iter_mut() {
             if let BeamEnd::Taper(length) = &mut beam.end {
