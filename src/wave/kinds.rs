@@ -24,6 +24,8 @@ const FILES: &[SourceFile<'static>] = embed!(
     "wave/source/curve/peaks.h",
     "wave/source/names.h",
     "wave/source/path/nearest.h",
+    "wave/source/path/next.h",
+    "wave/source/path/rows.h",
     "wave/source/profile.h",
     "wave/source/quadratic.h",
     "wave/source/sources.h",

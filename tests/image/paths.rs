@@ -167,6 +167,7 @@ fn scene_of(path: LightPath) -> Scene {
 #[test]
 fn the_reference_is_the_definition_and_another_shape_is_noticed() {
     for path in all_shapes() {
+        let mut others: f64 = 0.0;
         for ray in hard_rays() {
             let field = |s: f64| match path.profile {
                 Profile::InverseSquare => distance(&path, ray.at(s)).powi(-2),
@@ -188,8 +189,9 @@ fn the_reference_is_the_definition_and_another_shape_is_noticed() {
                 points: path.points.iter().map(|point| 1.001 * *point).collect(),
                 ..path.clone()
             };
-            assert!((value(&other) / expected - 1.0).abs() > 10.0 * DEFINITION_ERROR);
+            others = f64::max(others, (value(&other) / expected - 1.0).abs());
         }
+        assert!(others > 10.0 * DEFINITION_ERROR, "{others:e}");
     }
 }
 
@@ -236,6 +238,7 @@ fn images_by_pixels_and_by_tiles_meet_the_tolerance() {
         .enumerate()
     {
         let mut scene = scene_of(path(shape, k == 1, Profile::InverseSquare));
+        scene.integration.method = Method::exact(1e-3);
         scene.image.width = 72;
         scene.paths[0].flatness = Some(1e-6);
         if k == 0 {
