@@ -5,6 +5,7 @@
 //! may get further fields: write `..Torus::new(0.9)` and the like.
 
 mod camera;
+mod colors;
 #[cfg(feature = "files")]
 mod depth_report;
 mod exposure;

@@ -14,7 +14,7 @@ use crate::opencl::{Compute, Film, FilmFormat, Pixel, Program};
 use crate::reference::Tracer;
 use crate::scene::kinds::for_each_kind;
 use crate::scene::{
-    Absorption, Camera, Decay, Integration, Method, Profile, Sampling, Scene, SourceKind,
+    Absorption, Camera, Decay, Integration, Measure, Method, Profile, Sampling, Scene, SourceKind,
 };
 use crate::threads;
 
@@ -193,7 +193,7 @@ fn integration(task: Task, softening: f64) -> Integration {
     Integration {
         method,
         softening,
-        ..Integration::default()
+        measure: Measure::Parameter, // as listed rays are
     }
 }
 

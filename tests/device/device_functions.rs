@@ -13,7 +13,10 @@ const DISTANCE: &str = include_str!("../cl/distance.cl");
 /// The functions that are the same for all kinds of source, and the distance to the core of each kind.
 fn text() -> String {
     let distance = |kind: &str| {
-        let type_name = kind[..1].to_uppercase() + &kind[1..];
+        let type_name = match kind {
+            "path" => "LightPath".to_owned(),
+            _ => kind[..1].to_uppercase() + &kind[1..],
+        };
         DISTANCE.replace("KIND", kind).replace("TYPE", &type_name)
     };
     let distances: String = KINDS.iter().map(|kind| distance(kind)).collect();

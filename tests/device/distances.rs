@@ -5,7 +5,7 @@ use crate::common::lane_widths;
 use crate::device_functions::{ANCHOR, Bench};
 use energywave::internals::pack::Sources;
 use energywave::internals::{self, KINDS};
-use energywave::scene::Segment;
+use energywave::scene::{LightPath, Segment};
 use energywave::{Ray, Scene};
 use glam::DVec3;
 
@@ -29,6 +29,7 @@ fn distance_error(bench: &Bench, kernel: &str, scene: &Scene, seed: u64) -> f64 
         "torus_distance" => bytemuck::cast_slice(&packed.tori),
         "segment_distance" => bytemuck::cast_slice(&packed.segments),
         "curve_distance" => bytemuck::cast_slice(&packed.curves),
+        "path_distance" => bytemuck::cast_slice(&packed.paths),
         other => panic!("no sources for {other}"),
     };
     let column = |part: fn(&Ray) -> f64| rays.iter().map(|r| part(r) as f32).collect::<Vec<f32>>();
@@ -42,7 +43,9 @@ fn distance_error(bench: &Bench, kernel: &str, scene: &Scene, seed: u64) -> f64 
         ss.clone(),
     ];
     let names = ["ox", "oy", "oz", "dx", "dy", "dz", "ss"];
-    let mut lists = vec![("first", source)];
+    let mut rows = packed.rows.list.clone();
+    rows.push([0.0; 4]);
+    let mut lists = vec![("first", source), ("rows", bytemuck::cast_slice(&rows))];
     lists.extend(names.into_iter().zip(inputs.iter().map(Vec::as_slice)));
     let found = &bench.run(kernel, &lists, COUNT, &["result"])[0];
     // Of a beam's parts one is lit.
@@ -120,6 +123,19 @@ fn distance_cases() -> Vec<(&'static str, Scene)> {
         });
         cases.push(("segment_distance", scene));
     }
+    let points = [
+        [-1.2, 0.3, 0.8],
+        [0.4, -0.5, 0.1],
+        [1.0, 0.7, -0.4],
+        [2.5, 0.1, 0.3],
+    ];
+    let mut scene = empty();
+    scene.paths.push(LightPath {
+        profile: energywave::scene::Profile::Inverse,
+        coefficient: 1.0,
+        ..LightPath::new(points.map(DVec3::from).to_vec())
+    });
+    cases.push(("path_distance", scene));
     for kind in KINDS {
         let kernel = format!("{kind}_distance");
         assert!(

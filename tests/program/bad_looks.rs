@@ -42,6 +42,26 @@ const BAD_PATHS: &[(&str, &str, &str)] = &[
         "expected one of `polyline`, `spline`, `quadratic`, `cubic`",
     ),
     (
+        "[[path]]\npoints = [[0, 0, 0], [1, 0, 0]]\nintensity = [1]\n",
+        "6:13: path[0].intensity",
+        "needs at least 2 values, from one end to the other; found 1",
+    ),
+    (
+        "[[path]]\npoints = [[0, 0, 0], [1, 0, 0]]\ncolors = []\n",
+        "6:10: path[0].colors",
+        "needs at least 2 values, from one end to the other; found 0",
+    ),
+    (
+        "[[path]]\npoints = [[0, 0, 0], [1, 0, 0]]\ncolors = [\"#ff8800\", \"#ff880\"]\n",
+        "6:22: path[0].colors[1]",
+        "or six digits such as \"#ff8800\"",
+    ),
+    (
+        "[[sphere]]\ncolor = \"orange\"\n",
+        "5:9: sphere[0].color",
+        "a colour is three numbers, linear RGB, or six digits such as \"#ff8800\"",
+    ),
+    (
         "[[path]]\nflatness = 0\npoints = [[0, 0, 0], [1, 0, 0]]\n",
         "5:12: path[0].flatness",
         "must be positive",

@@ -13,8 +13,8 @@
 // Its rows: two for every level, with its numbers of corners and groups, the corners of a group, and its first row; and
 // the squared distance from which on it serves, and how far it is off. At the first row, a ball for every group of
 // pieces (centre, radius); then four rows for every corner: where it is, with the length of the piece that begins there
-// (0 at the last corner), what float32 leaves of that, the unit direction of the piece, and what float32 leaves of
-// that.
+// (0 at the last corner); what float32 leaves of that, with what light is multiplied with there; the unit direction of
+// the piece; and what float32 leaves of that.
 typedef struct LightPath {
     float4 emission;
     uint row; // its first
@@ -63,7 +63,13 @@ floatv path_field(const path_path *const path, const floatv s) {
     const path_spot spot = path_spot_at(path->ray, s);
     const path_groups groups = path_all_groups(&path->rows);
     const path_place nearest = path_nearest(&path->rows, &groups, &spot);
-    return field_at(&path->profile, fma(splat(4.0f), nearest.distance2, path->profile.softening2));
+    const floatv field = field_at(&path->profile, fma(splat(4.0f), nearest.distance2, path->profile.softening2));
+#ifdef SERIES
+    const path_view view = path_view_of(&path->rows, path->ray, &spot, &nearest);
+    return field * path_light(&view, splat(0.0f));
+#else
+    return field;
+#endif
 }
 
 // Returns the squared distance to a part of the path, all along the ray.
@@ -106,7 +112,11 @@ PER_RAY_IF_WIDE floatv path_integral(const Ray *const ray, const Sources *const 
         const path_place next = path_next(rows, &groups, ray, &spot, &place, &view, most);
         const floatv to = select(s + next.x, end, (next.x >= beyond) | (intv)(left == 1u ? -1 : 0));
         const Quadratic distance2 = path_distance2(&path, rows, &place, &view);
-        integral += integral_over(evenly_lit(s, to), &distance2, &path.profile, quadrature);
+        Stretch stretch = evenly_lit(s, to);
+#ifdef SERIES
+        stretch.light_from = path_light(&view, splat(0.0f)), stretch.light_to = path_light(&view, to - s);
+#endif
+        integral += integral_over(stretch, &distance2, &path.profile, quadrature);
         s = to, place = next;
         spot = path_spot_at(ray, s);
     }

@@ -5,10 +5,29 @@ use glam::DVec3;
 use super::{Field, Parts, Sample, Source, crossing, even};
 use crate::scene::{Light, LightPath, PathPiece, Ray};
 
-/// The pieces, each with a ball around it.
+/// The pieces, each with a ball around it, and what light is multiplied with along them.
 #[derive(Debug, Clone)]
 struct Chain {
     pieces: Vec<(PathPiece, DVec3, f64)>,
+    /// The share of the whole length at which each piece begins, and 1.
+    begins: Vec<f64>,
+    /// Shares of the length, with a value at each, linear between; none: 1 everywhere.
+    knots: Vec<(f64, f64)>,
+}
+
+/// Stretches of a piece whose lengths are added up.
+const STRETCHES: u32 = 256;
+
+/// Returns the length of a piece up to t, by Simpson's rule.
+fn length(piece: &PathPiece, t: f64) -> f64 {
+    let [_, c1, c2, c3] = piece.0;
+    let speed = |t: f64| (c1 + (2.0 * c2 + 3.0 * c3 * t) * t).length();
+    if (c2, c3) == (DVec3::ZERO, DVec3::ZERO) {
+        return t * speed(0.0);
+    }
+    let at = |k: u32| speed(t * f64::from(k) / f64::from(STRETCHES));
+    let pairs = (0..STRETCHES / 2).map(|k| at(2 * k) + 4.0 * at(2 * k + 1) + at(2 * k + 2));
+    pairs.sum::<f64>() * t / f64::from(3 * STRETCHES)
 }
 
 impl Parts for LightPath {
@@ -17,29 +36,69 @@ impl Parts for LightPath {
             let (center, radius) = piece.ball();
             (piece, center, radius)
         };
-        let pieces = self.pieces().into_iter().map(with_ball).collect();
-        add(Source::new(Chain { pieces }, light));
+        let pieces: Vec<_> = self.pieces().into_iter().map(with_ball).collect();
+        let mut begins = vec![0.0];
+        for (piece, ..) in &pieces {
+            begins.push(begins[begins.len() - 1] + length(piece, 1.0));
+        }
+        let whole = begins[begins.len() - 1];
+        begins.iter_mut().for_each(|begin| *begin /= whole);
+        for (light, knots) in self.along(&light) {
+            let chain = Chain {
+                pieces: pieces.clone(),
+                begins: begins.clone(),
+                knots,
+            };
+            add(Source::new(chain, light));
+        }
     }
 }
 
 impl Chain {
-    fn distance2(&self, point: DVec3) -> f64 {
-        let mut least = f64::INFINITY;
-        for (piece, center, radius) in &self.pieces {
+    /// Finds the squared distance to the nearest point, its piece, and where it lies on that.
+    fn nearest(&self, point: DVec3) -> (f64, usize, f64) {
+        let mut nearest = (f64::INFINITY, 0, 0.0);
+        for (index, (piece, center, radius)) in self.pieces.iter().enumerate() {
             let beyond = (center.distance(point) - radius).max(0.0);
-            if beyond * beyond < least {
+            if beyond * beyond < nearest.0 {
                 for_each_stationary(piece, |v| v, point, &mut |t| {
-                    least = least.min(piece.at(t).distance_squared(point));
+                    let distance2 = piece.at(t).distance_squared(point);
+                    if distance2 < nearest.0 {
+                        nearest = (distance2, index, t);
+                    }
                 });
             }
         }
-        least
+        nearest
+    }
+
+    fn distance2(&self, point: DVec3) -> f64 {
+        self.nearest(point).0
+    }
+
+    /// Returns what light is multiplied with at a point of a piece.
+    fn intensity(&self, index: usize, t: f64) -> f64 {
+        let (piece, ..) = &self.pieces[index];
+        let (begin, end) = (self.begins[index], self.begins[index + 1]);
+        let of_piece = length(piece, t) / length(piece, 1.0);
+        let share = begin + (end - begin) * if of_piece.is_nan() { 0.0 } else { of_piece };
+        let mut pairs = self.knots.windows(2);
+        let around = pairs.find(|pair| share <= pair[1].0).unwrap_or(&self.knots[self.knots.len() - 2..]);
+        let [(s0, v0), (s1, v1)] = [around[0], around[1]];
+        v0 + (v1 - v0) * (share - s0) / (s1 - s0)
     }
 }
 
 impl Field for Chain {
     fn sample(&self, point: DVec3) -> Sample {
-        even(self.distance2(point))
+        let (distance2, index, t) = self.nearest(point);
+        match self.knots.is_empty() {
+            true => even(distance2),
+            false => Sample {
+                distance2,
+                intensity: self.intensity(index, t),
+            },
+        }
     }
 
     /// Adds where the ray passes a piece that is nearest there, and where it leaves the planes through the ends of one.

@@ -5,7 +5,8 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{Brightness, Light, Profile, Shared, item};
-use crate::scene::values::{Checked, Fault, finite, read_some_vector, vector};
+use crate::scene::colors::read_some_color;
+use crate::scene::values::{Checked, Fault, finite, vector};
 
 /// More layers than this hardly differ.
 const MOST_LAYERS: usize = 16;
@@ -21,7 +22,7 @@ pub struct Layer {
     /// Linear RGB.
     #[serde(
         skip_serializing_if = "Option::is_none",
-        deserialize_with = "read_some_vector"
+        deserialize_with = "read_some_color"
     )]
     pub color: Option<DVec3>,
     /// How the field falls off.

@@ -3,8 +3,9 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, item, source, source_struct};
-use crate::scene::values::{Checked, Fault, positive, read_vectors, vector};
+use super::{Brightness, Core, HasLight, Light, Placement, Profile, SourceKind, item, source, source_struct};
+use crate::scene::colors::read_some_colors;
+use crate::scene::values::{Checked, Fault, finite, positive, read_vectors, vector};
 
 source_struct! {
     /// A chain of light: one core of many pieces, whose field is that of the nearest point of them all. Joints are no
@@ -25,6 +26,13 @@ source_struct! {
         /// tolerance asks, and less than a hundredth of a pixel.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub flatness: Option<f64>,
+        /// What the light is multiplied with along the core: values at equal steps of its length, linear between, at
+        /// least 2; `None`: 1 everywhere.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub intensity: Option<Vec<f64>>,
+        /// The same for each of red, green and blue.
+        #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "read_some_colors")]
+        pub colors: Option<Vec<DVec3>>,
     }
 }
 
@@ -126,6 +134,8 @@ impl LightPath {
             shape: PathShape::default(),
             closed: false,
             flatness: None,
+            intensity: None,
+            colors: None,
         })
     }
 
@@ -210,7 +220,8 @@ impl LightPath {
         for (k, point) in self.points.iter().enumerate() {
             vector("points", *point).map_err(|fault| fault.at(item("points", k)))?;
         }
-        self.flatness.map_or(Ok(()), |flatness| positive("flatness", flatness))
+        self.flatness
+            .map_or(Ok(()), |flatness| positive("flatness", flatness))
     }
 }
 
@@ -227,10 +238,83 @@ fn corners(pieces: &[PathPiece], chords: impl Fn(&PathPiece) -> usize) -> Vec<DV
     corners
 }
 
+/// A light of a path, and what it is multiplied with: knots at shares of the core's length, with a value at each,
+/// linear between; none: 1 everywhere.
+pub(crate) type LightAlong = (Light, Vec<(f64, f64)>);
+
+impl LightPath {
+    /// Checks what the light is multiplied with, and returns the greatest of it.
+    fn check_series(&self) -> std::result::Result<f64, Fault> {
+        let mut strongest = 1.0;
+        if let Some(series) = &self.intensity {
+            check_length("intensity", series.len())?;
+            for (k, value) in series.iter().enumerate() {
+                finite("intensity", *value).map_err(|fault| fault.at(item("intensity", k)))?;
+            }
+            strongest *= series.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        }
+        if let Some(colors) = &self.colors {
+            check_length("colors", colors.len())?;
+            for (k, color) in colors.iter().enumerate() {
+                vector("colors", *color).map_err(|fault| fault.at(item("colors", k)))?;
+            }
+            let most = |color: &DVec3| color.abs().max_element();
+            strongest *= colors.iter().map(most).fold(0.0, f64::max);
+        }
+        Ok(strongest)
+    }
+
+    /// Returns a light with what it is multiplied with along the core; its red, green and blue apart where that is not
+    /// the same for all.
+    pub(crate) fn along(&self, light: &Light) -> Vec<LightAlong> {
+        let Some(colors) = &self.colors else {
+            let series = self.intensity.as_deref().unwrap_or_default();
+            return vec![(*light, knots(series.len()).map(|s| (s, at_share(series, s))).collect())];
+        };
+        let intensity = self.intensity.as_deref().unwrap_or(&[1.0, 1.0]);
+        let mut shares: Vec<f64> = knots(colors.len()).chain(knots(intensity.len())).collect();
+        shares.sort_by(f64::total_cmp);
+        shares.dedup();
+        let of_channel = |axis: DVec3| {
+            let channel: Vec<f64> = colors.iter().map(|color| color.dot(axis)).collect();
+            let value = |s: &f64| (*s, at_share(&channel, *s) * at_share(intensity, *s));
+            let color = light.color * axis;
+            (Light { color, ..*light }, shares.iter().map(value).collect())
+        };
+        DVec3::AXES.map(of_channel).into()
+    }
+}
+
+/// Returns where along a core the values of a series are: equal shares of its length.
+fn knots(count: usize) -> impl Iterator<Item = f64> {
+    let last = count.max(2) - 1;
+    (0..count).map(move |k| k as f64 / last as f64)
+}
+
+/// Returns a series at a share of the core's length.
+fn at_share(series: &[f64], share: f64) -> f64 {
+    let scaled = share * (series.len() - 1) as f64;
+    let piece = (scaled as usize).min(series.len() - 2);
+    let (from, to) = (series[piece], series[piece + 1]);
+    from + (to - from) * (scaled - piece as f64)
+}
+
+fn check_length(key: &'static str, found: usize) -> Checked {
+    match found {
+        0 | 1 => {
+            let message = format!("needs at least 2 values, from one end to the other; found {found}");
+            Err(Fault::new(key, message))
+        }
+        _ => Ok(()),
+    }
+}
+
 impl SourceKind for LightPath {
     fn check(&self, brightness: &Brightness) -> Checked {
         self.check_points()?;
-        self.shared().check(brightness, &|light| light.coefficient.abs())
+        let strongest = self.check_series()?;
+        self.shared()
+            .check(brightness, &|light| strongest * light.coefficient.abs())
     }
 
     fn move_core(&mut self, place: &Placement) {
@@ -245,6 +329,22 @@ impl SourceKind for LightPath {
             0.0 => 1,
             _ => ROUGH_CHORDS,
         }))
+    }
+
+    fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+        for (light, knots) in self.lights().flat_map(|light| self.along(&light)) {
+            match knots.is_empty() {
+                true => add(light.emission()),
+                false => knots.iter().for_each(|(_, value)| add(*value * light.emission())),
+            }
+        }
+    }
+
+    fn with_series(self) -> Self {
+        Self {
+            intensity: Some(vec![0.6, 1.0, 0.3, 0.8]),
+            ..self
+        }
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {

@@ -16,10 +16,10 @@ macro_rules! source_struct {
             /// The papers' energy coefficient; of a beam that of its line.
             #[serde(default = "crate::scene::source::one")]
             pub coefficient: f64,
-            /// Linear RGB.
+            /// Linear RGB; in files also `"#rrggbb"`, sRGB.
             #[serde(
                 default = "crate::scene::source::white",
-                deserialize_with = "crate::scene::values::read_vector"
+                deserialize_with = "crate::scene::colors::read_color"
             )]
             pub color: glam::DVec3,
             /// How the field falls off.

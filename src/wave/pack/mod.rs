@@ -86,6 +86,24 @@ trait Pack {
     fn pack(&self, light: &Light, anchor: &Anchor, rows: &mut Rows) -> Self::Device;
 }
 
+/// The same for kinds whose light may need several entries of the device's list.
+trait PackInto<Device> {
+    /// Packs the source with one of its lights.
+    fn pack_into(&self, list: &mut Vec<Device>, light: &Light, anchor: &Anchor, rows: &mut Rows);
+}
+
+impl<Source: Pack> PackInto<Source::Device> for Source {
+    fn pack_into(
+        &self,
+        list: &mut Vec<Source::Device>,
+        light: &Light,
+        anchor: &Anchor,
+        rows: &mut Rows,
+    ) {
+        list.push(self.pack(light, anchor, rows));
+    }
+}
+
 macro_rules! define_sources {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         $(pub mod $kind;)*
@@ -114,8 +132,9 @@ macro_rules! define_sources {
                 $(
                     self.$list.clear();
                     for source in scene.$list.iter() {
-                        let lights = source.lights();
-                        self.$list.extend(lights.map(|light| source.pack(&light, anchor, rows)));
+                        for light in source.lights() {
+                            source.pack_into(&mut self.$list, &light, anchor, rows);
+                        }
                     }
                 )*
             }

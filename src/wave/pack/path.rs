@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::layout::Falloff;
-use super::{Anchor, Pack, Row, Rows, device_struct, falloff, fine, scene};
-use crate::scene::{Light, PathPiece};
+use super::{Anchor, PackInto, Row, Rows, device_struct, falloff, fine, scene};
+use crate::scene::{Light, LightAlong, PathLevel, PathPiece};
 
 device_struct! {
     /// A chain of light.
@@ -25,6 +25,9 @@ const MOST_GROUPS: usize = 256;
 /// How far straight pieces may be off a curve, times the tolerance: a share of the distance that a ray passes it at.
 const OF_DISTANCE: f64 = 0.3;
 
+/// The same where light changes along the core, and jumps with the nearest part.
+const OF_DISTANCE_WHERE_LIGHT_JUMPS: f64 = 0.01;
+
 /// How far they may be off in pixels, times the tolerance; and at most.
 const OF_PIXEL: f64 = 5.0;
 const MOST_PIXELS: f64 = 0.008;
@@ -36,48 +39,94 @@ const LEAST_OF_SIZE: f64 = 1e-8;
 /// The share by which float32 may make a ball too small.
 const BALL_MARGIN: f64 = 1e-5;
 
-impl Pack for scene::LightPath {
-    type Device = LightPath;
-
-    fn pack(&self, light: &Light, anchor: &Anchor, rows: &mut Rows) -> LightPath {
+impl PackInto<LightPath> for scene::LightPath {
+    fn pack_into(
+        &self,
+        list: &mut Vec<LightPath>,
+        light: &Light,
+        anchor: &Anchor,
+        rows: &mut Rows,
+    ) {
         let levels = self.levels(|piece| flatness(piece, anchor));
-        let row = rows.list.len();
-        rows.list.resize(row + 2 * levels.len(), [0.0; 4]);
-        for (k, level) in levels.iter().enumerate() {
-            let first = rows.list.len();
-            let count = level.corners.len();
-            let group_size = count.div_ceil(MOST_GROUPS).max(LEAST_GROUP);
-            push_level(&level.corners, group_size, anchor, rows);
-            let sizes = [count, count.div_ceil(group_size), group_size, first];
-            rows.list[row + 2 * k] = sizes.map(|size| f32::from_bits(size as u32));
-            let from = level.off / (OF_DISTANCE * anchor.tolerance);
-            rows.list[row + 2 * k + 1] = [(from * from) as f32, level.off as f32, 0.0, 0.0];
-        }
-        LightPath {
-            emission: anchor.emission(light.coefficient, light.color),
-            row: row as u32,
-            level_count: levels.len() as u32,
-            padding_0: 0,
-            padding_1: 0,
-            falloff: falloff(light.falloff),
-        }
+        let along = self.along(light);
+        list.extend(along.iter().map(|along| pack_levels(&levels, along, anchor, rows)));
     }
 }
 
+fn pack_levels(
+    levels: &[PathLevel],
+    (light, knots): &LightAlong,
+    anchor: &Anchor,
+    rows: &mut Rows,
+) -> LightPath {
+    let of_distance = match knots.is_empty() {
+        true => OF_DISTANCE,
+        false => OF_DISTANCE_WHERE_LIGHT_JUMPS,
+    };
+    let row = rows.list.len();
+    rows.has_series |= !knots.is_empty();
+    rows.list.resize(row + 2 * levels.len(), [0.0; 4]);
+    for (k, level) in levels.iter().enumerate() {
+        let first = rows.list.len();
+        let corners = lit_corners(&level.corners, knots);
+        let count = corners.len();
+        let group_size = count.div_ceil(MOST_GROUPS).max(LEAST_GROUP);
+        push_level(&corners, group_size, anchor, rows);
+        let sizes = [count, count.div_ceil(group_size), group_size, first];
+        rows.list[row + 2 * k] = sizes.map(|size| f32::from_bits(size as u32));
+        let from = level.off / (of_distance * anchor.tolerance);
+        rows.list[row + 2 * k + 1] = [(from * from) as f32, level.off as f32, 0.0, 0.0];
+    }
+    LightPath {
+        emission: anchor.emission(light.coefficient, light.color),
+        row: row as u32,
+        level_count: levels.len() as u32,
+        padding_0: 0,
+        padding_1: 0,
+        falloff: falloff(light.falloff),
+    }
+}
+
+/// Gives every corner what the light is multiplied with there, and makes a corner of every knot.
+fn lit_corners(corners: &[DVec3], knots: &[(f64, f64)]) -> Vec<(DVec3, f64)> {
+    if knots.is_empty() {
+        return corners.iter().map(|corner| (*corner, 1.0)).collect();
+    }
+    let lengths = corners.windows(2).map(|pair| pair[0].distance(pair[1]));
+    let whole: f64 = lengths.sum();
+    let value = |share: f64| {
+        let after = knots.partition_point(|(s, _)| *s <= share).clamp(1, knots.len() - 1);
+        let ((s0, v0), (s1, v1)) = (knots[after - 1], knots[after]);
+        v0 + (v1 - v0) * ((share - s0) / (s1 - s0)).clamp(0.0, 1.0)
+    };
+    let mut lit = vec![(corners[0], value(0.0))];
+    let mut share = 0.0;
+    for pair in corners.windows(2) {
+        let next = share + pair[0].distance(pair[1]) / whole;
+        let between = knots.iter().filter(|(s, _)| *s > share + 1e-9 && *s < next - 1e-9);
+        lit.extend(between.map(|(s, v)| (pair[0].lerp(pair[1], (s - share) / (next - share)), *v)));
+        lit.push((pair[1], value(next)));
+        share = next;
+    }
+    lit
+}
+
 /// Packs a chain of straight lines.
-fn push_level(corners: &[DVec3], group_size: usize, anchor: &Anchor, rows: &mut Rows) {
+fn push_level(corners: &[(DVec3, f64)], group_size: usize, anchor: &Anchor, rows: &mut Rows) {
     // A piece belongs to the group in which it begins.
     for first in (0..corners.len()).step_by(group_size) {
         let end = (first + group_size + 1).min(corners.len());
         rows.list.push(ball(anchor, &corners[first..end]));
     }
-    for (k, corner) in corners.iter().enumerate() {
-        let to_next = corners.get(k + 1).map_or(DVec3::ZERO, |next| next - corner);
+    for (k, (corner, value)) in corners.iter().enumerate() {
+        let to_next = corners.get(k + 1).map_or(DVec3::ZERO, |(next, _)| next - corner);
         let position = anchor.position(*corner);
         let direction = fine(to_next.normalize_or_zero());
         let [x, y, z, _] = position.value;
+        let [rest_x, rest_y, rest_z, _] = position.rest;
         rows.list.push([x, y, z, to_next.length() as f32]);
-        rows.list.extend([position.rest, direction.value, direction.rest]);
+        rows.list.push([rest_x, rest_y, rest_z, *value as f32]);
+        rows.list.extend([direction.value, direction.rest]);
     }
 }
 
@@ -93,8 +142,9 @@ fn flatness(piece: &PathPiece, anchor: &Anchor) -> f64 {
 }
 
 /// Packs a ball around points: its centre, and its radius.
-fn ball(anchor: &Anchor, points: &[DVec3]) -> Row {
-    let (center, radius) = ball_of(points);
+fn ball(anchor: &Anchor, corners: &[(DVec3, f64)]) -> Row {
+    let points: Vec<DVec3> = corners.iter().map(|(corner, _)| *corner).collect();
+    let (center, radius) = ball_of(&points);
     let position = anchor.position(center);
     let rounded = 1e-6 * center.distance(anchor.origin);
     let [x, y, z, _] = position.value;
@@ -133,7 +183,9 @@ mod tests {
         let mut rows = Rows::default();
         rows.list.push([7.0; 4]);
         let light = path.lights().next().unwrap();
-        let packed = path.pack(&light, &anchor, &mut rows);
+        let mut list = Vec::new();
+        path.pack_into(&mut list, &light, &anchor, &mut rows);
+        let packed = list[0];
         assert!(packed.level_count > 3);
         for level in 0..packed.level_count as usize {
             let at = packed.row as usize + 2 * level;

@@ -34,7 +34,11 @@ INLINE floatv parabola_falls(const Parabola p) {
 
 // Returns how far a step goes at most: far from where a part is closest, differences of squared distances have too few
 // digits to tell which part is nearest there.
+#ifdef SERIES
+#define FAR_AWAY 4.0f
+#else
 #define FAR_AWAY 64.0f
+#endif
 INLINE floatv path_far_step(const Parabola *const part, const floatv beyond) {
     const floatv closest = -part->b * inverse(max(part->a, 1e-30f));
     const floatv least = fma(part->b, closest, part->c);
@@ -45,8 +49,10 @@ INLINE floatv path_far_step(const Parabola *const part, const floatv beyond) {
 // Another part takes over where its squared distance is less by this share: parts that are all but equally near do not
 // take turns. Far from a path, short pieces then are points.
 #ifndef PATH_SLACK
-#ifdef COARSE
+#if defined(COARSE) && !defined(SERIES) // light that changes along the core jumps with the nearest part
 #define PATH_SLACK 1e-3f
+#elif defined(SERIES)
+#define PATH_SLACK 1e-6f
 #else
 #define PATH_SLACK 4e-6f
 #endif
@@ -84,6 +90,9 @@ typedef struct {
     float3v corner, corner_rest, along;
     Parabola distance2;
     floatv height, rise, length; // over the plane through its corner, along its line; and that line's length
+#ifdef SERIES
+    floatv light, growth; // what light is multiplied with at its corner, and how that grows along its line
+#endif
 } path_view;
 
 INLINE path_view path_view_of(const path_rows *const path, const Ray *const ray, const path_spot *const spot,
@@ -99,8 +108,23 @@ INLINE path_view path_view_of(const path_rows *const path, const Ray *const ray,
     view.distance2.a = select(length2, max(fma(-view.rise, view.rise, length2), 0.0f), place->is_line);
     view.distance2.b = select(approach, fma(-view.height, view.rise, approach), place->is_line);
     view.distance2.c = select(dot3(from_corner, from_corner), dot3(across, across), place->is_line);
+#ifdef SERIES
+    __global const float *const lights = (__global const float *)path->corners + 7;
+    const intv next = min(place->corner + 1, (intv)((int)path->corner_count - 1));
+    view.light = gather(lights, 16 * place->corner);
+    const floatv growth = (gather(lights, 16 * next) - view.light) * inverse(max(view.length, 1e-30f));
+    view.growth = select(splat(0.0f), growth, place->is_line);
+#endif
     return view;
 }
+
+#ifdef SERIES
+// Returns what light is multiplied with where the ray has moved on by x.
+INLINE floatv path_light(const path_view *const view, const floatv x) {
+    const floatv height = clamp(fma(view->rise, x, view->height), splat(0.0f), view->length);
+    return fma(view->growth, height, view->light);
+}
+#endif
 
 // Returns whether a ball can hold what is nearer than a part, as the ray moves on by up to `most`: the squared distance
 // to its centre, less that to the part, less twice radius times distance, is concave but for its sag.
