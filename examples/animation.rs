@@ -29,10 +29,7 @@ fn scene_at(time: f64) -> Scene {
         height: 180,
     };
     scene.integration.measure = Measure::Parameter;
-    scene.decay = Some(Decay {
-        alpha: 1.0,
-        beta: 1.0,
-    });
+    scene.decay = Some(Decay::new(1.0, 1.0));
     scene.display = Display {
         exposure: -0.8,
         tone_map: ToneMap::Aces,

@@ -90,6 +90,9 @@ pub struct ProgramTask<'a> {
     pub tolerance: Option<f64>,
     pub has_squares: bool,
     pub has_shapes: bool,
+    pub has_convolutions: bool,
+    /// The power of the decay where light fades in another way than by that of 2015.
+    pub fading: Option<u32>,
     pub has_series: bool,
     pub has_depth: bool,
     /// Rays that a work-item carries side by side.
@@ -114,6 +117,8 @@ pub fn program_text(program: &ProgramTask<'_>) -> (String, String) {
         kinds: present(program.kinds),
         has_squares: program.has_squares,
         has_shapes: program.has_shapes,
+        has_convolutions: program.has_convolutions,
+        fading: program.fading,
         has_series: program.has_series,
         has_depth: program.has_depth,
         film: FilmFormat::Floats,

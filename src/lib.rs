@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! L(s)    = (1 - s) S + s E          the ray, from the projection plane on    Watanabe, Abe, Konno 2015, eq. 19
-//! zeta(s) = alpha / (s + beta)^2     the decay, or 1                          eq. 21
+//! zeta(s) = alpha / (s + beta)^2     the decay, or 1, or another power        eq. 21
 //! psi(P)  = sum of coefficient * field(P)                                     eq. 18
 //! field   = 1 / distance to the core: a point, a line, a ring,                eq. 2, 3, 7
 //!           a quadratic curve, here times its local intensity,                eq. 8-17

@@ -172,7 +172,7 @@ impl RayRecord {
             return Err("alpha or beta is missing".to_owned());
         };
         let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO));
-        scene.decay = Some(Decay { alpha, beta });
+        scene.decay = Some(Decay::new(alpha, beta));
         scene.integration.measure = Measure::Parameter;
         match kind {
             "sphere" => scene.spheres.push(Sphere {

@@ -36,19 +36,22 @@ fn write(folder: &Path, name: &str) -> Result<(), String> {
     }
     let mut kinds = Vec::new();
     let (mut has_squares, mut has_shapes) = (false, false);
+    let (mut fading, mut has_convolutions) = (None, false);
     let (mut has_series, mut has_depth) = (false, false);
     for word in words {
         match word {
             "all" => kinds.extend(KINDS),
             "squares" => has_squares = true,
             "shapes" => has_shapes = true,
+            "absorption" => fading = Some(2),
+            "convolution" => has_convolutions = true,
             "series" => has_series = true,
             "depths" => has_depth = true,
             kind if KINDS.contains(&kind) => kinds.push(kind),
             other => {
                 let right = KINDS.join(", ");
                 return Err(format!(
-                    "\"{other}\" is no kind; {right}, all, squares, shapes, series or depths"
+                    "\"{other}\" is no kind; {right}, all, squares, shapes, absorption, convolution, series or depths"
                 ));
             }
         }
@@ -59,6 +62,8 @@ fn write(folder: &Path, name: &str) -> Result<(), String> {
         tolerance: (kernel != "simpson").then_some(1e-3),
         has_squares,
         has_shapes,
+        has_convolutions,
+        fading,
         has_series,
         has_depth,
         lanes: 1,

@@ -30,9 +30,9 @@ __kernel void trace(const FilmPart part, const Integrand integrand, const Launch
     if (begin >= part.count)
         return;
     const Sources sources = {KINDS(SOURCE_VALUE) rows};
-    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count);
     const uintv index = min(begin + LANE_NUMBERS, (uintv)(part.count - 1));
     const Ray ray = listed_ray(rays, part.first + index, integrand.softening2);
+    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count, ray.length);
     const float3v before = gathered_light(&part, begin, pixels);
     const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch, before);
     store_pixels(&part, begin, radiance, FILM_ARGUMENT);

@@ -9,19 +9,20 @@
 // What is integrated along every ray, and how well.
 typedef struct {
     float softening2;       // squared softening radius
-    float decay_strength;   // alpha / beta; 1 without decay
+    float decay_strength;   // alpha / beta, with a power m alpha beta^(1 - m); 1 without decay
     float decay_beta;       // 0 without decay
     float decay_per_beta;   // 1 / beta; 0 without decay
     float smooth_threshold; // method exact: how large unresolved coefficients may be, of the integral,
     float kinked_threshold; // and where the field along a ray has kinks
     uint node_count;        // nodes of the quadrature
-    uint padding;
+    float absorption;       // a binary logarithm per world unit
 } Integrand;
 CHECK_SIZE(Integrand, SIZEOF_INTEGRAND);
 
 // How a source's field falls off.
 typedef struct {
-    uint profile;  // 0: 1/q, 1: 1/q^2, 2: 1/q^3, of q^2 = d^2 + radius^2; 3: a Gaussian of d, 4: 1/d smeared by it
+    uint profile;  // 0: 1/q, 1: 1/q^2, 2: 1/q^3, of q^2 = d^2 + radius^2; 3: a Gaussian of d, 4: 1/d smeared by it,
+                   // 5: 1/q of every point of the core, added up
     float radius2; // squared radius of the core; 0: it has none
     float reach2;  // squared distance at which the light ends; 0: nowhere
     float reach2_rest;

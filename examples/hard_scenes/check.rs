@@ -246,6 +246,7 @@ impl<'a> Tracer<'a> {
                 .map(<[_; 2]>::from),
             integrand: Integrand {
                 decay: scene.decay,
+                absorption: scene.absorption,
                 softening: scene.integration.softening,
             },
         }

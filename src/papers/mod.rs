@@ -87,10 +87,7 @@ impl Table {
             width: resolution,
             height: resolution,
         };
-        scene.decay = Some(Decay {
-            alpha: 0.1,
-            beta: 0.1,
-        });
+        scene.decay = Some(Decay::new(0.1, 0.1));
         scene.integration.method = Method::Simpson { divisions };
         scene.integration.measure = Measure::Parameter;
         match self {

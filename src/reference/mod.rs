@@ -17,7 +17,9 @@ pub use quadrature::integrate;
 
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
-use crate::scene::{CORE_FLOOR, Decay, Falloff, Measure, Method, Profile, Ray, Scene, ViewPlane};
+use crate::scene::{
+    Absorption, CORE_FLOOR, Decay, Falloff, Measure, Method, Profile, Ray, Scene, ViewPlane,
+};
 use crate::threads;
 
 /// Relative error that [`exact`] aims at.
@@ -29,12 +31,17 @@ const GAUSSIAN_END: f64 = 9.0;
 /// How exactly edges of light are found, as a share of the ray; light begins there with the square of what is missing.
 const EDGE_WIDTH: f64 = 1e-6;
 
+/// Where absorption has left some of the light, and where little, in lengths over which it falls by the factor e.
+const ABSORBED: [f64; 4] = [1.0, 4.0, 16.0, 64.0];
+
 /// What is integrated along a ray besides the field.
 #[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Integrand {
     /// Decay; `None`: zeta = 1.
     pub decay: Option<Decay>,
+    /// Absorption; `None`: there is none.
+    pub absorption: Option<Absorption>,
     /// Softening radius, world units.
     pub softening: f64,
 }
@@ -42,13 +49,32 @@ pub struct Integrand {
 impl Integrand {
     /// Returns `psi(L(s)) zeta(s)` for one source of emission 1.
     pub fn at(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
-        let floor = CORE_FLOOR * CORE_FLOOR * ray.span.length_squared();
-        let sample = source.field.sample(ray.at(s));
+        let floor2 = CORE_FLOOR * CORE_FLOOR * ray.span.length_squared();
         let radius = source.falloff.radius;
-        let softened = sample.distance2 + radius * radius + self.softening * self.softening;
-        let field = source.falloff.field(sample.distance2, softened.max(floor));
+        let softening2 = radius * radius + self.softening * self.softening;
+        let field = source
+            .field
+            .light(ray.at(s), &source.falloff, softening2, floor2);
         let zeta = self.decay.map_or(1.0, |decay| decay.at(s));
-        zeta * sample.intensity * field
+        let length = s * ray.span.length();
+        let left = self
+            .absorption
+            .map_or(1.0, |absorption| absorption.at(length));
+        zeta * left * field
+    }
+
+    /// Adds breaks to where a ray comes into the light: from there on it may be absorbed at once.
+    fn add_depths(&self, ray: &Ray, breaks: &mut Vec<f64>) {
+        let kappa = self.absorption.map_or(0.0, |absorption| absorption.kappa);
+        let depth = 1.0 / (kappa * ray.span.length());
+        if depth >= 1.0 {
+            return;
+        }
+        breaks.push(0.0);
+        for begin in 0..breaks.len() {
+            let begin = breaks[begin];
+            breaks.extend(ABSORBED.map(|depths| begin + depths * depth));
+        }
     }
 }
 
@@ -58,6 +84,7 @@ pub fn exact(source: &Source, ray: &Ray, integrand: &Integrand, end: f64) -> f64
     let mut breaks = Vec::with_capacity(16);
     source.field.breaks(ray, &mut breaks);
     add_edges(source, ray, &mut breaks);
+    integrand.add_depths(ray, &mut breaks);
     integrate(
         |s| integrand.at(source, ray, s),
         &mut breaks,
@@ -184,6 +211,7 @@ impl Tracer {
             sources: sources(scene),
             integrand: Integrand {
                 decay: scene.decay,
+                absorption: scene.absorption,
                 softening: scene.integration.softening,
             },
             method,

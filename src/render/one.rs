@@ -298,10 +298,7 @@ pub(crate) mod tests {
             width: size,
             height: size,
         };
-        scene.decay = Some(Decay {
-            alpha: 0.1,
-            beta: 0.1,
-        });
+        scene.decay = Some(Decay::new(0.1, 0.1));
         scene.integration.method = Method::Simpson { divisions: 64 };
         scene.tori.push(Torus {
             profile: Profile::Inverse,

@@ -101,10 +101,10 @@ macro_rules! define_extent {
 for_each_kind!(define_extent);
 
 impl Scene {
-    /// Returns the length of every ray, `|E - S|`, world units: the camera's, or where it names none one that passes all
-    /// sources. That is, measured from the projection plane, 5 times as far as the target and the cores of sources
-    /// without a reach, and no less far than the light of those with one; at most 1e9. Cores are taken by the box around
-    /// them, cylinders and beams by the point or tip that they name.
+    /// Returns the length of every ray, `|E - S|`, world units: the camera's, or where it names none one that passes
+    /// all sources. That is, measured from the projection plane, 5 times as far as the target and the cores of sources
+    /// without a reach, and no less far than the light of those with one; at most 1e9. Cores are taken by the box
+    /// around them, cylinders and beams by the point or tip that they name.
     #[must_use]
     pub fn ray_length(&self) -> f64 {
         let camera = &self.camera;
@@ -117,7 +117,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Beam, Cylinder, Layer, Sphere, Torus};
+    use crate::scene::{Beam, Cylinder, Layer, LightPath, Sphere, Torus};
 
     /// From 4 before the origin, the plane at 1.
     fn scene() -> Scene {
@@ -170,6 +170,11 @@ mod tests {
             ..Beam::new(DVec3::Y)
         });
         assert_eq!(scene.ray_length(), 65.0);
+        for points in [vec![], vec![DVec3::ONE]] {
+            let mut broken = scene.clone();
+            broken.paths.push(LightPath::new(points)); // a fault, but none of this
+            assert_eq!(broken.ray_length(), 65.0);
+        }
         scene.beams[0].tip.y = f64::NAN;
         assert_eq!(scene.ray_length(), 15.0);
         scene.beams[0].tip.y = 1e9;

@@ -8,7 +8,8 @@ use super::values::{Checked, Fault, finite, positive};
 /// finite.
 pub const CORE_FLOOR: f64 = 1e-6;
 
-/// Decay with distance, `zeta(s) = alpha / (s + beta)^2` (Watanabe, Abe, Konno 2015, eq. 21), over s in `[0,1]`.
+/// Decay with distance, `zeta(s) = alpha / (s + beta)^power` over s in `[0,1]`; with the power 2 that of Watanabe, Abe,
+/// Konno 2015, eq. 21.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Decay {
@@ -16,18 +17,80 @@ pub struct Decay {
     pub alpha: f64,
     /// Offset; positive.
     pub beta: f64,
+    /// 0, 1, 2 or 3; with 0 zeta is alpha everywhere.
+    #[serde(default = "square", skip_serializing_if = "is_square")]
+    pub power: u32,
+}
+
+fn square() -> u32 {
+    2
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
+fn is_square(power: &u32) -> bool {
+    *power == square()
 }
 
 impl Decay {
+    /// Makes the decay of 2015, `alpha / (s + beta)^2`.
+    #[must_use]
+    pub fn new(alpha: f64, beta: f64) -> Self {
+        Self {
+            alpha,
+            beta,
+            power: square(),
+        }
+    }
+
     /// Returns `zeta(s)`.
     #[must_use]
     pub fn at(self, s: f64) -> f64 {
-        self.alpha / ((s + self.beta) * (s + self.beta))
+        let base = s + self.beta;
+        match self.power {
+            2 => self.alpha / (base * base),
+            power => self.alpha / base.powi(power as i32),
+        }
     }
 
     pub(super) fn check(&self) -> Checked {
         positive("alpha", self.alpha)?;
-        positive("beta", self.beta)
+        positive("beta", self.beta)?;
+        if self.power <= 3 {
+            return Ok(());
+        }
+        let message = format!(
+            "{}; light decays by one of the powers 0, 1, 2 and 3",
+            self.power
+        );
+        Err(Fault::new("power", message))
+    }
+}
+
+/// Absorption on the way from S (Beer, Lambert): light falls by `exp(-kappa x)` over the length x, world units.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Absorption {
+    /// Per world unit; 0: none.
+    pub kappa: f64,
+}
+
+impl Absorption {
+    /// Returns what is left after a length, world units.
+    #[must_use]
+    pub fn at(self, length: f64) -> f64 {
+        (-self.kappa * length).exp()
+    }
+
+    pub(super) fn check(&self) -> Checked {
+        finite("kappa", self.kappa)?;
+        if self.kappa >= 0.0 {
+            return Ok(());
+        }
+        let message = format!(
+            "light that passes is absorbed, or with 0 it is not; found {}",
+            self.kappa
+        );
+        Err(Fault::new("kappa", message))
     }
 }
 

@@ -33,7 +33,7 @@ pub use depth_report::DepthReport;
 #[cfg(feature = "files")]
 pub use file::MethodKeys;
 pub use group::{Group, Repeat, Rotation};
-pub use integration::{CORE_FLOOR, Decay, Integration, Measure, Method, Sampling};
+pub use integration::{Absorption, CORE_FLOOR, Decay, Integration, Measure, Method, Sampling};
 pub use list::List;
 #[cfg(feature = "files")]
 pub use preset::Preset;
@@ -57,6 +57,8 @@ macro_rules! define_scene {
             pub image: ImageSize,
             /// How light fades along a ray; `None`: it does not (zeta = 1).
             pub decay: Option<Decay>,
+            /// What space absorbs along a ray; `None`: nothing.
+            pub absorption: Option<Absorption>,
             /// How the integral along a ray is computed.
             pub integration: Integration,
             /// How radiance becomes an 8-bit picture.
@@ -74,6 +76,7 @@ macro_rules! define_scene {
                     camera,
                     image: ImageSize::default(),
                     decay: None,
+                    absorption: None,
                     integration: Integration::default(),
                     display: Display::default(),
                     depth: None,
@@ -106,11 +109,30 @@ macro_rules! define_scene {
 }
 for_each_kind!(define_scene);
 
+/// How light fades along a ray in another way than by the decay of 2015.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Fading {
+    /// The power of the decay; 0: there is none.
+    pub power: u32,
+    /// Absorption, per world unit.
+    pub kappa: f64,
+}
+
 impl Scene {
     /// Returns the projection plane, from which every pixel has its ray.
     #[must_use]
     pub fn view_plane(&self) -> ViewPlane {
         ViewPlane::new(&self.camera, self.image, self.ray_length())
+    }
+
+    /// Returns how light fades where the decay of 2015, or none, does not tell it all.
+    pub(crate) fn fading(&self) -> Option<Fading> {
+        let fading = Fading {
+            power: self.decay.map_or(0, |decay| decay.power),
+            kappa: self.absorption.map_or(0.0, |absorption| absorption.kappa),
+        };
+        let is_plain = matches!(fading.power, 0 | 2) && fading.kappa == 0.0;
+        (!is_plain).then_some(fading)
     }
 
     /// Returns where a device takes this scene's integrals, see [`Sampling`].

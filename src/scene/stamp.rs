@@ -63,10 +63,7 @@ mod tests {
         assert!(fault(|scene| scene.camera.near = -1.0).contains("camera.near"));
         assert!(fault(|scene| scene.spheres[0].center.x = f64::NAN).contains("sphere[0].center"));
         let bright = fault(|scene| {
-            scene.decay = Some(Decay {
-                alpha: 1e9,
-                beta: 1e-4,
-            });
+            scene.decay = Some(Decay::new(1e9, 1e-4));
         });
         assert!(bright.contains("sphere[0].coefficient"), "{bright}");
     }

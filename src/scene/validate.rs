@@ -49,6 +49,9 @@ impl Scene {
         if let Some(decay) = &self.decay {
             decay.check().map_err(of("decay"))?;
         }
+        if let Some(absorption) = &self.absorption {
+            absorption.check().map_err(of("absorption"))?;
+        }
         let integration = &self.integration;
         integration.method.check().map_err(of("integration"))?;
         check_softening(integration.softening).map_err(of("integration"))?;
@@ -57,11 +60,11 @@ impl Scene {
         let brightness = self.brightness();
         let of_line = brightness.most / brightness.least_distance;
         if of_line > BRIGHTEST {
+            let power = self.decay.map_or(0, |decay| decay.power);
             return Err(SceneError::value(
                 "decay.beta",
                 format!(
-                    "alpha / beta^2 next to a core comes to {:.0e}, more than float32 holds",
-                    of_line
+                    "alpha / beta^{power} next to a core comes to {of_line:.0e}, more than float32 holds"
                 ),
             ));
         }

@@ -20,6 +20,10 @@ pub(crate) struct Task {
     pub has_squares: bool,
     /// Whether any has no closed form for how it falls off.
     pub has_shapes: bool,
+    /// Whether any adds up the light of all points of its core.
+    pub has_convolutions: bool,
+    /// The power of the decay where light fades in another way than by that of 2015.
+    pub fading: Option<u32>,
     /// Whether any has a series over its core.
     pub has_series: bool,
     /// Whether depths end the rays.
@@ -146,8 +150,14 @@ fn task_definitions(workers: u32, counts_samples: bool, task: &Task, rule: &Rule
     if task.has_squares {
         definitions += " -D INVERSE_SQUARES";
     }
-    if task.has_shapes {
+    if task.has_shapes || task.fading.is_some() {
         definitions += " -D SHAPES";
+    }
+    if task.has_convolutions {
+        definitions += " -D CONVOLUTION";
+    }
+    if let Some(power) = task.fading {
+        definitions += &format!(" -D FADING={power}");
     }
     if task.has_series {
         definitions += " -D SERIES";

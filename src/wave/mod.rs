@@ -168,7 +168,7 @@ impl Wave {
         let anchor = Anchor {
             origin,
             reach,
-            measure: 1.0,
+            measure: pack::even_decay(scene),
             pixel: 0.0,
             tolerance: scene.integration.method.tolerance(),
         };
@@ -196,6 +196,8 @@ impl Wave {
             kinds: self.packed.sources.counts().map(|count| count > 0),
             has_squares: self.packed.facts(scene).has_squares,
             has_shapes: self.packed.facts(scene).has_shapes,
+            has_convolutions: self.packed.facts(scene).has_convolutions,
+            fading: scene.fading().map(|fading| fading.power),
             has_series: self.packed.sources.rows.has_series,
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
             film,
@@ -224,7 +226,8 @@ impl Wave {
         let nodes = match scene.integration.method {
             Method::Simpson { divisions } => {
                 // Of a ray that ends early, only the kernel knows where its nodes are.
-                let decay = scene.decay.filter(|_| !task.has_depth);
+                let is_known = !task.has_depth && task.fading.is_none();
+                let decay = scene.decay.filter(|decay| is_known && decay.power > 0);
                 simpson::nodes(divisions, decay)
             }
             Method::Exact { .. } => Vec::new(),

@@ -13,7 +13,9 @@ use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{Compute, Film, FilmFormat, Pixel, Program};
 use crate::reference::Tracer;
 use crate::scene::kinds::for_each_kind;
-use crate::scene::{Camera, Decay, Integration, Method, Profile, Sampling, Scene, SourceKind};
+use crate::scene::{
+    Absorption, Camera, Decay, Integration, Method, Profile, Sampling, Scene, SourceKind,
+};
 use crate::threads;
 
 /// The step from one compared pixel to the next: a number that shares no divisor with the width and the lanes.
@@ -134,12 +136,20 @@ fn agrees(found: Pixel, expected: DVec3, limit: f64) -> bool {
 /// one with softening and depths along the axis.
 fn known_scenes(task: Task) -> Result<[Scene; 2]> {
     let mut near = Scene::new(Camera::new(DVec3::new(0.4, -4.0, 1.7), DVec3::ZERO));
-    near.decay = Some(Decay {
-        alpha: 0.1,
-        beta: 0.1,
-    });
+    near.decay = Some(Decay::new(0.1, 0.1));
     let mut far = Scene::new(Camera::new(DVec3::new(-1.0, -9.0, 4.0), DVec3::ZERO));
     far.integration.softening = 0.05;
+    if let Some(power) = task.fading {
+        let decay = Decay {
+            power,
+            ..Decay::new(0.1, 0.3)
+        };
+        (near.decay, far.decay) = (Some(decay), Some(decay));
+        (near.absorption, far.absorption) = (
+            Some(Absorption { kappa: 0.05 }),
+            Some(Absorption { kappa: 0.4 }),
+        );
+    }
     for (scene, along) in [(&mut near, DepthAlong::Ray), (&mut far, DepthAlong::Axis)] {
         scene.image = SIZE;
         scene.integration = integration(task, scene.integration.softening);
@@ -149,6 +159,12 @@ fn known_scenes(task: Task) -> Result<[Scene; 2]> {
         }
         if task.has_shapes {
             add_specimens(scene, task, Profile::InverseCube);
+        }
+        if task.has_convolutions {
+            let place = DVec3::new(-0.2, 0.1, 0.3);
+            scene
+                .segments
+                .push(SourceKind::specimen(place, Profile::Convolution));
         }
         if task.has_depth {
             let distance = scene.camera.eye.length();

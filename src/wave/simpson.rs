@@ -37,10 +37,7 @@ mod tests {
                 .sum();
             assert!((sum - 0.25).abs() < 1e-7, "{divisions}: {sum}");
         }
-        let decay = Decay {
-            alpha: 0.1,
-            beta: 0.5,
-        };
+        let decay = Decay::new(0.1, 0.5);
         let (plain, decayed) = (nodes(4, None), nodes(4, Some(decay)));
         let ratio = f64::from(decayed[2].weight / plain[2].weight);
         assert!((ratio - 0.1).abs() < 1e-7, "{ratio}");

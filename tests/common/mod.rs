@@ -90,10 +90,7 @@ pub fn empty_scene(width: u32, height: u32) -> Scene {
     scene.integration.measure = Measure::Parameter;
     scene.image = ImageSize { width, height };
     scene.integration.method = Method::simpson(DIVISIONS);
-    scene.decay = Some(Decay {
-        alpha: 0.1,
-        beta: 0.1,
-    });
+    scene.decay = Some(Decay::new(0.1, 0.1));
     scene
 }
 

@@ -50,10 +50,10 @@ pub fn random_view(random: &mut Rng, size: u32) -> Scene {
     };
     scene.integration.method = Method::default();
     if random.u32(0..4) > 0 {
-        scene.decay = Some(Decay {
-            alpha: spread(random, 0.1, 1.0),
-            beta: spread(random, 0.02, 2.0),
-        });
+        scene.decay = Some(Decay::new(
+            spread(random, 0.1, 1.0),
+            spread(random, 0.02, 2.0),
+        ));
     }
     scene.integration.measure = match random.bool() {
         true => Measure::Length,

@@ -72,10 +72,9 @@ fn cut_by_hand(renderer: &mut Renderer, scene: &Scene) -> RadianceImage {
             continue;
         }
         let mut scene = scene.clone();
-        scene.decay = scene.decay.map(|decay| Decay {
-            alpha: decay.alpha / (end * end),
-            beta: decay.beta / end,
-        });
+        scene.decay = scene
+            .decay
+            .map(|decay| Decay::new(decay.alpha / (end * end), decay.beta / end));
         let measure = match scene.integration.measure {
             Measure::Length => end * plane.ray_length,
             _ => end,

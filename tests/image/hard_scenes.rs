@@ -15,10 +15,7 @@ fn through_a_core(kind: Kind) -> Scene {
     let mut scene = Scene::new(camera);
     scene.integration.method = Method::exact(1e-4);
     scene.integration.measure = Measure::Parameter;
-    scene.decay = Some(Decay {
-        alpha: 0.2,
-        beta: 0.3,
-    });
+    scene.decay = Some(Decay::new(0.2, 0.3));
     scene.image = ImageSize {
         width: 5,
         height: 5,
@@ -77,6 +74,7 @@ fn hard_views() -> Vec<(&'static str, Scene)> {
     let view = |eye: [f64; 3], target: [f64; 3]| {
         let mut scene = common::empty_scene(24, 24);
         (scene.camera.eye, scene.camera.target) = (eye.into(), target.into());
+        scene.camera.ray_length = Some(common::far_beyond_target(&scene.camera));
         scene.integration.method = Method::default();
         scene
     };
@@ -102,10 +100,7 @@ fn hard_views() -> Vec<(&'static str, Scene)> {
     views.push(("a hundred weights", scene));
 
     let mut scene = usual();
-    scene.decay = Some(Decay {
-        alpha: 1e-9,
-        beta: 1e-9,
-    });
+    scene.decay = Some(Decay::new(1e-9, 1e-9));
     scene.curves.push(common::curve(arch, None));
     scene
         .tori
@@ -224,10 +219,7 @@ fn awkward_scene(seed: u64) -> Scene {
     }
     let spread = |random: &mut fastrand::Rng| 10_f64.powf(6.0 * random.f64() - 4.0);
     if random.bool() {
-        scene.decay = Some(Decay {
-            alpha: spread(&mut random),
-            beta: spread(&mut random),
-        });
+        scene.decay = Some(Decay::new(spread(&mut random), spread(&mut random)));
     }
     at_tolerance(&scene, if random.bool() { 1e-3 } else { 1e-6 })
 }

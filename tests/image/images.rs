@@ -136,6 +136,7 @@ fn the_intensity_at_the_nearest_point_does_not_hang_on_rounding() {
         let mut scene = empty_scene(37, 23);
         scene.camera.eye *= distance;
         scene.camera.near = 0.8 * scene.camera.eye.length();
+        scene.camera.ray_length = Some(common::far_beyond_target(&scene.camera));
         let series = Some(vec![1.0, 5.0, 2.0, 8.0]);
         scene.curves.push(common::curve(points, series));
         let image = renderer.render(&scene).unwrap();

@@ -133,6 +133,7 @@ fn a_moved_turned_and_scaled_scene_gives_the_same_image() {
     for scale in [1e-4, 1e4] {
         let mut scaled = mapped(&scene, |v| v * scale);
         scaled.camera.near *= scale;
+        scaled.camera.ray_length = scaled.camera.ray_length.map(|length| length * scale);
         scaled.tori.iter_mut().for_each(|t| t.major_radius *= scale);
         for beam in scaled.beams.iter_mut() {
             if let BeamEnd::Taper(length) = &mut beam.end {
@@ -180,10 +181,9 @@ fn wild_scene(random: &mut fastrand::Rng) -> Scene {
     scene.camera.fov_y = 1.0 + 178.0 * random.f64();
     scene.camera.ray_length = Some(magnitude(random));
     scene.integration.method = Method::simpson(8);
-    scene.decay = random.bool().then(|| Decay {
-        alpha: magnitude(random),
-        beta: magnitude(random),
-    });
+    scene.decay = random
+        .bool()
+        .then(|| Decay::new(magnitude(random), magnitude(random)));
     let eye = scene.camera.eye;
     let place = |random: &mut fastrand::Rng| {
         if random.u8(..6) == 0 {

@@ -6,18 +6,22 @@ mod common;
 
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
+mod convolution; // holds light that adds up over a core to its definition
 mod defaults; // looks at a scene that names nothing
 mod depth; // compares occluded images with those of rays that are cut by hand
 mod exact; // holds the method `exact` to every tolerance
+mod fading; // fades light by every power, and absorbs it
+mod fading_forms; // holds the reference to closed forms of points and lines that fade
 mod figures; // draws every scene by every method in the form of the device
 mod hard_scenes; // takes the method `exact` through cores, along them, and to extreme numbers
 mod images; // bounds the worst pixel of the Simpson rule
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
 mod layers; // holds several lights of one core to as many sources
 mod parts; // draws rows, rays and changed scenes as the whole image has them
+mod paths; // holds paths to their definition
 mod presets; // draws every preset, and looks at its whites and blacks
 mod rays; // compares single rays with integrals that are known to nine digits
 mod search; // draws what examples/hard_scenes has found
-mod segment;
-mod shapes; // holds segments to their definition
+mod segment; // holds segments to their definition
+mod shapes; // holds how fields fall off to their definition
 mod tiles; // holds interpolation by tiles to the tolerance, and counts what it costs

@@ -239,10 +239,7 @@ const CHANGES: [Change; 21] = [
         scene.camera.ray_length = Some(4.0)
     }),
     ("the decay", |scene| {
-        scene.decay = Some(Decay {
-            alpha: 0.3,
-            beta: 0.2,
-        });
+        scene.decay = Some(Decay::new(0.3, 0.2));
     }),
     ("the softening", |scene| scene.integration.softening = 0.1),
     ("the measure", |scene| {

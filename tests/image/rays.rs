@@ -50,6 +50,7 @@ fn the_reference_notices_a_ray_moved_by_a_millionth() {
         let scene = known.scene.as_ref()?;
         let integrand = Integrand {
             decay: scene.decay,
+            absorption: None,
             softening: 0.0,
         };
         let source = &internals::sources(scene)[0];

@@ -85,7 +85,7 @@ fn scene_of(segment: Segment, decay: Option<Decay>) -> Scene {
 
 fn decays() -> [Option<Decay>; 3] {
     [(0.1, 0.1), (0.5, 2.0)]
-        .map(|(alpha, beta)| Some(Decay { alpha, beta }))
+        .map(|(alpha, beta)| Some(Decay::new(alpha, beta)))
         .into_iter()
         .chain([None])
         .collect::<Vec<_>>()
@@ -110,6 +110,7 @@ fn the_reference_is_the_definition_and_a_moved_end_is_noticed() {
                 let scene = scene_of(segment, decay);
                 let integrand = energywave::internals::Integrand {
                     decay,
+                    absorption: None,
                     softening: 0.0,
                 };
                 exact(&sources(&scene)[0], &ray, &integrand, 1.0)

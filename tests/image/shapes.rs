@@ -159,10 +159,7 @@ fn the_device_and_the_reference_meet_the_definition_of_every_shape() {
     let mut spoiled = renderer(8, "-DGAUSSIAN_END=1.5f -Dwindow2=1.0f");
     let mut misses = 0;
     for (number, shape) in SHAPES.into_iter().enumerate() {
-        let decay = (number % 2 == 1).then_some(Decay {
-            alpha: 0.2,
-            beta: 0.3,
-        });
+        let decay = (number % 2 == 1).then_some(Decay::new(0.2, 0.3));
         // All kinds in one scene: every scene is a program.
         let mut scene = common::empty_scene(32, 32);
         scene.decay = decay;
@@ -172,6 +169,7 @@ fn the_device_and_the_reference_meet_the_definition_of_every_shape() {
             let parts = sources(&one);
             let integrand = Integrand {
                 decay,
+                absorption: None,
                 softening: 0.0,
             };
             let sums = rays()

@@ -1,7 +1,52 @@
-//! Every fault of layers and groups is named with its place, in TOML and in JSON.
+//! Every fault of layers, groups and paths is named with its place, in TOML and in JSON.
 
 use crate::bad_scenes::{CAMERA, check};
 use energywave::Scene;
+
+/// What follows a valid [camera] of three lines; where the fault stands; words of the message.
+const BAD_PATHS: &[(&str, &str, &str)] = &[
+    ("[[path]]\n", "4:1: path[0].points", "required, but missing"),
+    (
+        "[[path]]\npoints = []\n",
+        "5:10: path[0].points",
+        "a path has at least two points, found 0",
+    ),
+    (
+        "[[path]]\npoints = [[0, 0, 0]]\n",
+        "5:10: path[0].points",
+        "a path has at least two points, found 1",
+    ),
+    (
+        "[[path]]\npoints = [[0, 0, 0], [1, 0]]\n",
+        "5:22: path[0].points[1]",
+        "expected three numbers, found 2",
+    ),
+    (
+        "[[path]]\npoints = [[0, 0, 0], [1, nan, 0]]\n",
+        "5:22: path[0].points[1]",
+        "NaN is not a finite number",
+    ),
+    (
+        "[[path]]\nshape = \"quadratic\"\npoints = [[0, 0, 0], [1, 0, 0]]\n",
+        "6:10: path[0].points",
+        "2 points make no open chain of quadratic curves: end and control point in turn, such as 3 or 5 points",
+    ),
+    (
+        "[[path]]\nshape = \"cubic\"\nclosed = true\npoints = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\n",
+        "7:10: path[0].points",
+        "4 points make no closed chain of cubic curves: an end and two control points in turn, such as 6 or 9 points",
+    ),
+    (
+        "[[path]]\nshape = \"zigzag\"\npoints = [[0, 0, 0], [1, 0, 0]]\n",
+        "5:9: path[0].shape",
+        "expected one of `polyline`, `spline`, `quadratic`, `cubic`",
+    ),
+    (
+        "[[path]]\nflatness = 0\npoints = [[0, 0, 0], [1, 0, 0]]\n",
+        "5:12: path[0].flatness",
+        "must be positive",
+    ),
+];
 
 /// What follows a valid [camera] of three lines; where the fault stands; words of the message.
 const BAD_LAYERS: &[(&str, &str, &str)] = &[
@@ -275,8 +320,8 @@ fn a_fault_of_a_group_in_json_has_its_key() {
 }
 
 #[test]
-fn a_fault_of_a_layer_is_named_with_file_line_column_and_key() {
-    for (rest, place, words) in BAD_LAYERS {
+fn a_fault_of_a_path_or_a_layer_is_named_with_file_line_column_and_key() {
+    for (rest, place, words) in BAD_PATHS.iter().chain(BAD_LAYERS) {
         let scene = format!("{CAMERA}{rest}");
         let place = format!("scene.toml:{place}");
         check("scene.toml", scene.as_bytes(), &[&place, words]);

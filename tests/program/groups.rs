@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use energywave::Scene;
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Group, Layer, Repeat, Rotation, Segment, Sphere, Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Group, Layer, LightPath, Repeat, Rotation, Segment,
+    Sphere, Torus,
 };
 use glam::{DMat3, DVec3};
 
@@ -105,6 +106,10 @@ fn a_group_scales_then_turns_then_moves_and_scales_lengths_alone() {
         }],
         curves: vec![Curve::new([DVec3::ZERO, x, y])],
         segments: vec![Segment::new(x, y)],
+        paths: vec![LightPath {
+            flatness: Some(0.01),
+            ..LightPath::new(vec![DVec3::ZERO, x, y])
+        }],
         ..placed()
     };
     let mut scene = Scene::new(Camera::new(-4.0 * y, DVec3::ZERO));
@@ -141,6 +146,10 @@ fn a_group_scales_then_turns_then_moves_and_scales_lengths_alone() {
     near(c, of_y);
     near(scene.segments[0].from, of_x);
     near(scene.segments[0].to, of_y);
+    let path = &scene.paths[0];
+    near(path.points[0], o);
+    near(path.points[2], of_y);
+    assert_eq!(path.flatness, Some(0.02));
 }
 
 #[test]

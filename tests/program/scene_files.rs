@@ -6,8 +6,8 @@ use crate::common;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, ToneMap};
 use energywave::internals::KINDS;
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Integration, Layer, Measure, Method, Profile,
-    Sampling, Segment, Sphere, Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Integration, Layer, LightPath, Measure, Method,
+    PathShape, Profile, Sampling, Segment, Sphere, Torus,
 };
 use energywave::{ErrorKind, Scene};
 use fastrand::Rng;
@@ -95,6 +95,18 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             radius: number(random),
             ..Segment::new(vector(random), vector(random))
         });
+        let points = (0..7).map(|_| vector(random)).collect();
+        scene.paths.push(LightPath {
+            shape: [PathShape::Spline, PathShape::Quadratic, PathShape::Cubic][random.usize(0..3)],
+            closed: false,
+            flatness: random.bool().then(|| number(random)),
+            coefficient: number(random),
+            color: vector(random),
+            profile,
+            radius: number(random),
+            layers: layers(random),
+            ..LightPath::new(points)
+        });
         scene.tori.push(Torus {
             center: vector(random),
             axis: vector(random),
@@ -150,10 +162,7 @@ fn rich_scenes() -> Vec<Scene> {
             width: 1 + index as u32,
             height: 16384 - index as u32,
         };
-        scene.decay = (index % 3 != 0).then(|| Decay {
-            alpha: number(random),
-            beta: number(random),
-        });
+        scene.decay = (index % 3 != 0).then(|| Decay::new(number(random), number(random)));
         scene.integration = Integration {
             method,
             measure: [Measure::Parameter, Measure::Length][index % 2],

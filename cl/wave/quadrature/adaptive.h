@@ -73,10 +73,15 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
             const floatv grown = power_of_two(map->half_length * node[begin + k]), shrunk = coarse_inverse(grown);
             const floatv right_up = map->rising * grown, right_down = map->falling * shrunk;
             const floatv left_up = map->rising * shrunk, left_down = map->falling * grown;
-            right_s[k] = parameter_of(map, map->middle + (right_up - right_down));
-            left_s[k] = parameter_of(map, map->middle + (left_up - left_down));
+            const floatv right_x = map->middle + (right_up - right_down), left_x = map->middle + (left_up - left_down);
+            right_s[k] = parameter_of(map, right_x);
+            left_s[k] = parameter_of(map, left_x);
             right_v[k] = right_up + right_down;
             left_v[k] = left_up + left_down;
+#ifdef FADING
+            right_v[k] *= fading_beside(decay, map, right_x, right_s[k]);
+            left_v[k] *= fading_beside(decay, map, left_x, left_s[k]);
+#endif
         }
 #if KIND_HAS(look_ahead)
         KIND_look_ahead(&panel->near, left_s, right_s, PAIRS_AT_ONCE);
@@ -116,8 +121,7 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
 #else
     const floatv unseen = splat(0.0f);
 #endif
-    const floatv doubtful = panel->doubt * scale;
-    const PanelSum result = {scale * sum, doubtful * doubtful * fma(even, even, odd * odd),
+    const PanelSum result = {scale * sum, size_of_unresolved(panel->doubt * scale, even, odd),
                              clamp(middle, panel->from, panel->to), unseen};
     return result;
 }
@@ -130,7 +134,7 @@ INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
     const floatv begin = peaks->begin, end = peaks->end;
 #if LANES == 1
     // One after the other, from one copy of the code: other work-items work while one waits.
-    floatv unresolved2 = 0.0f;
+    floatv unresolved = 0.0f;
     *integral = 0.0f;
 #pragma unroll 1
     for (int k = 0; k < 2; ++k) {
@@ -140,10 +144,9 @@ INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
         KIND_panel panel = KIND_open_panel(peaks, decay, from, to);
         const PanelSum sum = KIND_sum_panel(peaks, decay, &panel);
         *integral += sum.integral;
-        unresolved2 = max(unresolved2, sum.unresolved2);
+        unresolved = max(unresolved, sum.unresolved);
     }
-    const floatv allowed = threshold * *integral;
-    return !(unresolved2 > allowed * allowed);
+    return !is_beyond(unresolved, threshold * *integral);
 #else
     const intv has_first = !is_empty_panel(decay, begin, cut), has_second = !is_empty_panel(decay, cut, end);
     const floatv first_end = select(begin + 1.0f, cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
@@ -154,8 +157,8 @@ INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
     const PanelSum of_second = KIND_sum_panel(peaks, decay, &second);
     *integral = select(splat(0.0f), of_first.integral, has_first) + select(splat(0.0f), of_second.integral, has_second);
     const floatv allowed = threshold * *integral;
-    const intv is_rough = ((of_first.unresolved2 > allowed * allowed) & has_first) |
-                          ((of_second.unresolved2 > allowed * allowed) & has_second);
+    const intv is_rough =
+        (is_beyond(of_first.unresolved, allowed) & has_first) | (is_beyond(of_second.unresolved, allowed) & has_second);
     return !any_lane(is_rough);
 #endif
 }
@@ -201,12 +204,16 @@ INLINE void KIND_trim(const KIND_peaks *const peaks, const uint count, floatv *c
 
 INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadrature *const quadrature) {
     const Decay decay = quadrature->decay;
-#if KIND_HAS(kinks)
+#if KIND_HAS(kinks) || defined(FADING)
     float threshold = quadrature->kinked_threshold;
 #else
     float threshold = quadrature->smooth_threshold;
 #endif
-    const KIND_peaks peaks = *all_peaks;
+    KIND_peaks peaks = *all_peaks;
+#if defined(FADING) && KIND_HAS(peaks_along)
+    peaks.end = min(peaks.end, darkness(decay));
+    peaks.begin = min(peaks.begin, peaks.end);
+#endif
     floatv all_from[MOST_PANELS], all_to[MOST_PANELS], integral;
     uint open = KIND_panels(&peaks, quadrature, all_from, all_to, &integral);
 #if defined(SHAPES) && KIND_HAS(peaks_along)
@@ -273,7 +280,7 @@ INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadratu
                 continue;
             }
             const floatv allowed = patience * max(fabs(integral + value), FIRST_ESTIMATE * fabs(estimate));
-            const intv is_rough = ((panel.unresolved2 > allowed * allowed) | (panel.unseen > allowed)) & !is_done &
+            const intv is_rough = (is_beyond(panel.unresolved, allowed) | (panel.unseen > allowed)) & !is_done &
                                   (own_cuts < (intv)((int)most_cuts));
             if (open + 2 <= MOST_PANELS && any_lane(is_rough)) {
                 // What is as short as float32 can tell stays whole.

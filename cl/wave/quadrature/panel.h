@@ -23,15 +23,35 @@ typedef struct {
     floatv middle;          // of the peak: v0 less v(base)
     floatv rising, falling; // w/2 e^u and w/2 e^-u in the panel's middle
     floatv half_length;     // half the panel's length in u / ln 2
+#ifdef FADING
+    floatv near_base, near_end; // nearness at the base and at the end
+#endif
 } Panel;
 
 // What the nodes of a panel make of it.
 typedef struct {
     floatv integral;
-    floatv unresolved2; // the squared size of what the rule cannot tell from noise, of the same kind as the integral
-    floatv middle;      // where to cut the panel in two, as a parameter s
-    floatv unseen;      // what may lie between its nodes, of the same kind
+    floatv unresolved; // the size of what the rule cannot tell from noise, of the same kind; squared but with -D FADING
+    floatv middle;     // where to cut the panel in two, as a parameter s
+    floatv unseen;     // what may lie between its nodes, of the same kind
 } PanelSum;
+
+// Returns the size of what is not resolved. What absorption has left is too faint to be squared.
+floatv size_of_unresolved(const floatv scale, const floatv even, const floatv odd) {
+#ifdef FADING
+    return scale * (fabs(even) + fabs(odd));
+#else
+    return scale * scale * fma(even, even, odd * odd);
+#endif
+}
+
+intv is_beyond(const floatv unresolved, const floatv allowed) {
+#ifdef FADING
+    return unresolved > fabs(allowed);
+#else
+    return unresolved > allowed * allowed;
+#endif
+}
 
 // Returns whether so little of v passes, beside what has passed before, that it adds nothing.
 intv is_empty_panel(const Decay decay, const floatv from, const floatv to) {
@@ -106,10 +126,31 @@ INLINE Panel mapped_panel(const Decay decay, const Peak peak, const floatv from,
     panel.half_length = 0.5f * binary_logarithm(growth);
     panel.rising = quarter_width * at_end;
     panel.falling = quarter_width * at_begin;
+#ifdef FADING
+    panel.near_base = near_base, panel.near_end = nearness(decay, to);
+#endif
     return panel;
 }
 
 // Returns s - base of the point that lies `x` ahead of the base in v.
 floatv parameter_of(const Panel *const panel, const floatv x) {
-    return x * coarse_inverse(fma(-panel->bend, x, panel->stretch));
+    floatv below = fma(-panel->bend, x, panel->stretch);
+#ifdef FADING
+    below = max(below, panel->bend * panel->near_end); // what rounding would take beyond the end
+#endif
+    return x * coarse_inverse(below);
 }
+
+#ifdef FADING
+// Returns what v does not take away of the fading, `x` ahead of the base in v, which is the parameter base + `s`.
+floatv fading_beside(const Decay decay, const Panel *const panel, const floatv x, const floatv s) {
+    const floatv left = left_at(decay, panel->base + s);
+#if FADING == 1
+    return left * inverse(max(panel->near_base - x, panel->near_end));
+#elif FADING == 3
+    return left * max(panel->near_base - x, panel->near_end);
+#else
+    return left;
+#endif
+}
+#endif

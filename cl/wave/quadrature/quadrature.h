@@ -12,9 +12,12 @@ typedef struct {
 } Quadrature;
 
 Quadrature quadrature_of(const Integrand *const integrand, __global const Node *const nodes,
-                         __global uint *const counts) {
-    const Quadrature quadrature = {
-        nodes, integrand->node_count, decay_of(integrand), integrand->smooth_threshold, integrand->kinked_threshold,
-        counts};
+                         __global uint *const counts, const floatv ray_length) {
+    const Quadrature quadrature = {nodes,
+                                   integrand->node_count,
+                                   decay_of(integrand, ray_length),
+                                   integrand->smooth_threshold,
+                                   integrand->kinked_threshold,
+                                   counts};
     return quadrature;
 }

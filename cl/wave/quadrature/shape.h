@@ -69,12 +69,22 @@ CALL_IF_SCALAR floatv shape_over(const Stretch whole, const Quadratic *const dis
                                  const Quadrature *const quadrature) {
     const floatv left2 = (profile->end2 - distance2->bare) + (profile->end2_rest - distance2->bare_rest);
     stretch_peaks peaks = {whole, *distance2, *profile, left2};
+    intv is_lit = whole.to > whole.from;
+    floatv from = whole.from, to = whole.to;
     if (HAS_END(profile)) {
-        const intv is_lit = left2 > 0.0f;
         const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
         const floatv half_length = 0.5f * twice_sqrt(max(left2, 1e-30f)) * per_slope;
         const floatv middle = fma(-distance2->ahead, per_slope, distance2->nearest);
-        const floatv from = max(whole.from, middle - half_length), to = min(whole.to, middle + half_length);
+        is_lit = left2 > 0.0f;
+        from = max(from, middle - half_length), to = min(to, middle + half_length);
+    }
+#ifdef FADING
+    to = min(to, darkness(quadrature->decay));
+    const bool is_trimmed = true;
+#else
+    const bool is_trimmed = HAS_END(profile);
+#endif
+    if (is_trimmed) {
         const intv is_there = is_lit & (to > from);
         if (!any_lane(is_there))
             return splat(0.0f);

@@ -1,7 +1,8 @@
 #pragma each_kind
 // Composite Simpson rule (Watanabe, Abe, Konno 2015, eq. 23) over the field of a KIND: the sum of weight times field
 // over the nodes. The host tabulates the nodes over a whole ray, with the decay in their weights; where depths end the
-// rays (-D DEPTH), over a part of one, without it.
+// rays (-D DEPTH), over a part of one, without it; so they do where light fades otherwise than by its decay (-D
+// FADING).
 
 // The sum is taken in blocks: rounding then grows with the block, not with up to 65537 nodes.
 #ifndef SIMPSON_BLOCK
@@ -18,7 +19,7 @@ INLINE floatv KIND_simpson(const Ray *const ray, const Sources *const sources, c
         const uint end = min(begin + SIMPSON_BLOCK, node_count);
         floatv block = splat(0.0f);
         for (uint k = begin; k < end; ++k) {
-#ifdef DEPTH
+#if defined(DEPTH) || defined(FADING)
             const floatv s = ray->end * nodes[k].s;
             const floatv weight = ray->end * nodes[k].weight * decay_at(quadrature->decay, s);
 #else

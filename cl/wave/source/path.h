@@ -1,5 +1,5 @@
 // Path, a chain of straight pieces (the host cuts curves into them): the field of its nearest point, so that joints are
-// no brighter than what lies beside them. How the nearest part of it changes along a ray is in path/nearest.h. A curve
+// no brighter than what lies beside them. How the nearest part of it changes along a ray is in path/next.h. A curve
 // is there in several levels, the first with the most pieces: rays that pass it farther away need fewer.
 #pragma once
 #include "../../view.h"
@@ -26,6 +26,7 @@ CHECK_SIZE(LightPath, SIZEOF_LIGHTPATH);
 
 // These use the struct.
 #include "path/nearest.h"
+#include "path/next.h"
 
 typedef struct {
     const Ray *ray;
@@ -101,7 +102,8 @@ PER_RAY_IF_WIDE floatv path_integral(const Ray *const ray, const Sources *const 
     for (uint left = MOST_PATH_STEPS(rows); left != 0 && any_lane(s < end); --left) {
         const floatv beyond = end - s;
         const path_view view = path_view_of(rows, ray, &spot, &place);
-        const path_place next = path_next(rows, &groups, ray, &spot, &place, &view, beyond);
+        const floatv most = path_far_step(&view.distance2, beyond);
+        const path_place next = path_next(rows, &groups, ray, &spot, &place, &view, most);
         const floatv to = select(s + next.x, end, (next.x >= beyond) | (intv)(left == 1u ? -1 : 0));
         const Quadratic distance2 = path_distance2(&path, rows, &place, &view);
         integral += integral_over(evenly_lit(s, to), &distance2, &path.profile, quadrature);

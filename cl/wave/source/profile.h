@@ -25,7 +25,10 @@ typedef struct {
 #define IS_SQUARE(profile) 0u
 #endif
 
-#ifdef SHAPES
+#ifdef FADING // has no closed forms
+#define IS_SHAPED(profile) 1
+#define HAS_END(profile) ((profile)->end2 < ENDLESS)
+#elif defined(SHAPES)
 #define IS_SHAPED(profile) ((profile)->number > 1u || (profile)->per_reach2 > 0.0f)
 #define HAS_END(profile) ((profile)->end2 < ENDLESS)
 #else

@@ -1,11 +1,14 @@
 // Segment, a finite line: 1 over the distance to its nearest point, or over its square. The planes through its ends,
 // perpendicular to it, cut a ray into three stretches, past one end, past the line and past the other end, each with a
-// closed form.
+// closed form. With -D CONVOLUTION there are segments all of whose points are added up (convolution.h).
 #pragma once
 #include "../../view.h"
 #include "../quadrature/quadrature.h"
 #include "../quadrature/stretch.h"
 #include "../tiles/clearance.h"
+#ifdef CONVOLUTION
+#include "convolution.h"
+#endif
 #include "profile.h"
 #include "quadratic.h"
 #include "sources.h"
@@ -25,6 +28,10 @@ typedef struct {
     Quadratic to_line, to_first, to_last; // squared distances: to the line, and to its ends
     Height over_first, over_last;         // over the planes through the ends, along the line
     Profile profile;
+#ifdef CONVOLUTION
+    bool is_convolved;
+    float length; // doubled too
+#endif
 } segment_path;
 
 PER_RAY_IF_WIDE segment_path segment_along(const Ray *const ray, const Sources *const sources, const uint index) {
@@ -32,6 +39,14 @@ PER_RAY_IF_WIDE segment_path segment_along(const Ray *const ray, const Sources *
     const fine3v direction = fine3(segment->direction, segment->direction_rest);
     segment_path path;
     path.profile = profile_of(ray, &segment->falloff);
+#ifdef CONVOLUTION
+    // What is added up is softened, and has no other floor.
+    path.is_convolved = segment->falloff.profile == 5u;
+    if (path.is_convolved)
+        path.profile.softening2 += path.profile.floor2;
+    const float4 span = (segment->to - segment->from) + (segment->to_rest - segment->from_rest);
+    path.length = 2.0f * sqrt(dot(span, span));
+#endif
     const floatv softening2 = path.profile.softening2;
     path.to_line = distance2_to_line(ray, segment->point, segment->point_rest, segment->direction,
                                      segment->direction_rest, softening2);
@@ -46,7 +61,23 @@ PER_RAY_IF_WIDE segment_path segment_along(const Ray *const ray, const Sources *
     return path;
 }
 
+#ifdef CONVOLUTION
+INLINE ConvolvedPiece segment_piece(const segment_path *const path) {
+    ConvolvedPiece piece = {path->to_line,    path->to_first,  path->to_last,
+                            path->over_first, path->over_last, path->length};
+    piece.over_first.at *= 2.0f, piece.over_first.slope *= 2.0f;
+    piece.over_last.at *= 2.0f, piece.over_last.slope *= 2.0f;
+    return piece;
+}
+#endif
+
 floatv segment_field(const segment_path *const path, const floatv s) {
+#ifdef CONVOLUTION
+    if (path->is_convolved) {
+        const ConvolvedPiece piece = segment_piece(path);
+        return convolved_at(&piece, s);
+    }
+#endif
     const floatv over_first = height_at(&path->over_first, s), over_last = height_at(&path->over_last, s);
     const floatv beside = quadratic_at(&path->to_line, s);
     const floatv before = quadratic_at(&path->to_first, s), beyond = quadratic_at(&path->to_last, s);
@@ -57,6 +88,12 @@ floatv segment_field(const segment_path *const path, const floatv s) {
 PER_RAY_IF_WIDE floatv segment_integral(const Ray *const ray, const Sources *const sources, const uint index,
                                         const Quadrature *const quadrature) {
     const segment_path path = segment_along(ray, sources, index);
+#if defined(CONVOLUTION) && defined(EXACT)
+    if (path.is_convolved) {
+        const ConvolvedPiece piece = segment_piece(&path);
+        return convolved_over(&piece, ray->end, quadrature);
+    }
+#endif
     const intv is_falling = path.over_first.slope <= -1e-30f;
     __global const Segment *const segment = &sources->segment_list[index];
     const fine3v direction = fine3(segment->direction, segment->direction_rest);

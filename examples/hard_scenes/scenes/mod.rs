@@ -169,10 +169,7 @@ fn cut_at_a_core(dice: &mut Dice, kind: Kind) -> (Scene, Core) {
 
 fn extreme_decay(dice: &mut Dice, kind: Kind) -> (Scene, Core) {
     let (mut scene, core) = anywhere(dice, kind);
-    scene.decay = Some(Decay {
-        alpha: dice.spread(1e-3, 10.0),
-        beta: dice.spread(1e-6, 1e2),
-    });
+    scene.decay = Some(Decay::new(dice.spread(1e-3, 10.0), dice.spread(1e-6, 1e2)));
     (scene, core)
 }
 

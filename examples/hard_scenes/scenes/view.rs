@@ -44,10 +44,7 @@ pub fn empty(dice: &mut Dice) -> Scene {
     scene.image = ImageSize { width, height };
     scene.integration.method = Method::default();
     if !dice.one_in(4) {
-        scene.decay = Some(Decay {
-            alpha: dice.spread(0.1, 1.0),
-            beta: dice.spread(0.02, 2.0),
-        });
+        scene.decay = Some(Decay::new(dice.spread(0.1, 1.0), dice.spread(0.02, 2.0)));
     }
     scene.integration.measure = match dice.one_in(3) {
         true => Measure::Length,

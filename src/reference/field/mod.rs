@@ -39,6 +39,15 @@ pub trait Field: std::fmt::Debug + Send + Sync {
     /// Samples the field at a point, without softening.
     fn sample(&self, point: DVec3) -> Sample;
 
+    /// Returns the light at a point, from what is added to squared distances, and what none is taken below.
+    fn light(&self, point: DVec3, falloff: &Falloff, softening2: f64, floor2: f64) -> f64 {
+        let Sample {
+            distance2,
+            intensity,
+        } = self.sample(point);
+        intensity * falloff.field(distance2, (distance2 + softening2).max(floor2))
+    }
+
     /// Appends the parameters s, inside `[0,1]` or not, at which the field peaks or may not be smooth along the ray.
     fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>);
 }

@@ -1,9 +1,9 @@
-//! A finite line.
+//! A finite line: the distance to its nearest point, or the light of all its points added up.
 
 use glam::DVec3;
 
 use super::{Field, Parts, Sample, Source, crossing, even, nearest_to_line};
-use crate::scene::{Ray, Segment, Light};
+use crate::scene::{Falloff, Light, Profile, Ray, Segment};
 
 /// The points from one end to the other; the span is their difference.
 #[derive(Debug, Clone)]
@@ -14,13 +14,14 @@ struct FiniteLine {
 
 impl Parts for Segment {
     fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source)) {
-        add(Source::new(
-            FiniteLine {
-                from: self.from,
-                span: self.to - self.from,
-            },
-            light,
-        ));
+        let line = FiniteLine {
+            from: self.from,
+            span: self.to - self.from,
+        };
+        add(match light.falloff.profile {
+            Profile::Convolution => Source::new(AddedLine(line), light),
+            _ => Source::new(line, light),
+        });
     }
 }
 
@@ -50,5 +51,39 @@ impl Field for FiniteLine {
             breaks.push(crossing(ray, self.from, direction));
             breaks.push(crossing(ray, to, direction));
         }
+    }
+}
+
+/// A line whose points all add their light.
+#[derive(Debug, Clone)]
+struct AddedLine(FiniteLine);
+
+impl Field for AddedLine {
+    fn sample(&self, point: DVec3) -> Sample {
+        self.0.sample(point)
+    }
+
+    /// Returns the integral of 1/r over the line: softening, and with it the floor, lies at right angles to all else.
+    fn light(&self, point: DVec3, _: &Falloff, softening2: f64, floor2: f64) -> f64 {
+        let length = self.0.span.length();
+        if length == 0.0 {
+            return 0.0;
+        }
+        let direction = self.0.span / length;
+        let from_begin = point - self.0.from;
+        let (ahead, beside) = (from_begin.dot(direction), from_begin.cross(direction));
+        let distance = (beside.length_squared() + softening2 + floor2).sqrt();
+        let (begin, end) = (-ahead / distance, (length - ahead) / distance);
+        if begin * end > 0.0 && begin.abs().min(end.abs()) > 0.1 {
+            // Both on one side: their difference would cancel.
+            let (near, far) = (begin.abs().min(end.abs()), begin.abs().max(end.abs()));
+            let growth = (far - near) * (1.0 + (far + near) / (far.hypot(1.0) + near.hypot(1.0)));
+            return (growth / (near + near.hypot(1.0))).ln_1p();
+        }
+        end.asinh() - begin.asinh()
+    }
+
+    fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>) {
+        self.0.breaks(ray, breaks);
     }
 }

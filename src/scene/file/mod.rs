@@ -46,6 +46,8 @@ macro_rules! define_scene_file {
             image: ImageSize,
             #[serde(default, skip_serializing_if = "Option::is_none")]
             decay: Option<Decay>,
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            absorption: Option<Absorption>,
             #[serde(default)]
             integration: IntegrationTable,
             #[serde(default)]
@@ -73,6 +75,7 @@ macro_rules! define_scene_file {
                     camera: self.camera.clone(),
                     image: self.image,
                     decay: self.decay,
+                    absorption: self.absorption,
                     integration: self.integration.integration(),
                     display: self.display.display(),
                     depth: None,
@@ -110,6 +113,7 @@ macro_rules! define_scene_file {
                     camera: scene.camera.clone(),
                     image: scene.image,
                     decay: scene.decay,
+                    absorption: scene.absorption,
                     integration: IntegrationTable::of(&scene.integration),
                     display: DisplayTable::of(&scene.display),
                     depth,

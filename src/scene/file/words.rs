@@ -13,10 +13,11 @@ pub(super) enum Language {
 }
 
 /// Tables of which a scene has one.
-const SINGLE: [&str; 6] = [
+const SINGLE: [&str; 7] = [
     "camera",
     "image",
     "decay",
+    "absorption",
     "integration",
     "display",
     "depth",

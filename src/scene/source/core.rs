@@ -38,11 +38,10 @@ impl Core {
         Self::Bezier([from, (from + to) / 2.0, to])
     }
 
-    /// Returns the lowest and the highest coordinates of its points; of a line without end those of the point by which it
-    /// is given.
+    /// Returns the lowest and the highest coordinates of its points; of a line without end those of its point.
     pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
-        if let Self::Line { point, .. } = *self {
-            return (point, point);
+        if let Self::Line { point, .. } = self {
+            return (*point, *point);
         }
         let reach = |sign: f64| DVec3::from(DVec3::AXES.map(|axis| self.reach(sign * axis)));
         (-reach(-1.0), reach(1.0))

@@ -23,6 +23,9 @@ pub enum Profile {
     Gaussian,
     /// `erf(d / (sqrt(2) radius)) / d`: `1/d` smeared by a Gaussian of that standard deviation.
     Smeared,
+    /// The sum of `1/d` over all points of the core, per unit of its length: light that adds up, without a joint where
+    /// cores meet. For a [`Segment`](super::Segment) alone.
+    Convolution,
 }
 
 impl Profile {
@@ -50,13 +53,21 @@ const ACROSS: u32 = 200;
 impl Falloff {
     /// Returns whether its integrals have no closed form on the devices.
     pub(crate) fn is_shaped(&self) -> bool {
-        let is_inverse = matches!(self.profile, Profile::Inverse | Profile::InverseSquare);
-        !is_inverse || self.reach.is_some()
+        match self.profile {
+            Profile::Inverse | Profile::InverseSquare | Profile::Convolution => {
+                self.reach.is_some()
+            }
+            _ => true,
+        }
     }
 
     /// Returns whether it has a sharper peak than 1 over the distance.
     pub(crate) fn is_sharp(&self) -> bool {
-        !matches!(self.profile, Profile::Inverse | Profile::Smeared)
+        let is_soft = matches!(
+            self.profile,
+            Profile::Inverse | Profile::Smeared | Profile::Convolution
+        );
+        !is_soft
     }
 
     /// Returns the coefficient with which a ray straight across the core has the light `peak`; without a peak the one
@@ -75,7 +86,7 @@ impl Falloff {
         } = *self;
         let Some(reach) = reach else {
             return match profile {
-                Profile::Inverse | Profile::Smeared => f64::INFINITY,
+                Profile::Inverse | Profile::Smeared | Profile::Convolution => f64::INFINITY,
                 Profile::InverseSquare => PI / radius,
                 Profile::InverseCube => 2.0 / (radius * radius),
                 Profile::Gaussian => (2.0 * PI).sqrt() * radius,
@@ -93,13 +104,13 @@ impl Falloff {
         2.0 * pairs.sum::<f64>() * step / 3.0
     }
 
-    /// Returns the field of coefficient 1, from the squared distance to the core, and what profiles take for it: with
-    /// the squared radius and whatever else softens it.
+    /// Returns the field of coefficient 1, of a convolution that of one point, from the squared distance to the core,
+    /// and what profiles take for it: with the squared radius and whatever else softens it.
     pub(crate) fn field(&self, distance2: f64, softened2: f64) -> f64 {
         let width = SQRT_2 * self.radius;
         let distance = distance2.sqrt();
         let profile = match self.profile {
-            Profile::Inverse => 1.0 / softened2.sqrt(),
+            Profile::Inverse | Profile::Convolution => 1.0 / softened2.sqrt(),
             Profile::InverseSquare => 1.0 / softened2,
             Profile::InverseCube => softened2.powf(-1.5),
             Profile::Gaussian => (-distance2 / (width * width)).exp(),
@@ -128,6 +139,19 @@ impl Falloff {
             Measure::Length => return Ok(()),
         };
         Err(Fault::new("peak", advice))
+    }
+
+    /// Checks what goes with light that is added up over a core.
+    pub(super) fn check_convolution(&self, peak: Option<f64>) -> Checked {
+        if self.reach.is_some() {
+            let message = "light that is added up over a core has no end: leave reach out, or choose another profile";
+            return Err(Fault::new("reach", message));
+        }
+        if peak.is_some() {
+            let message = "light that is added up over a core has no limit along a ray without end: give a coefficient";
+            return Err(Fault::new("peak", message));
+        }
+        Ok(())
     }
 
     /// Checks its numbers, each for itself.

@@ -55,6 +55,7 @@ impl Layer {
             reach: self.reach.or(source.reach),
             peak,
             layers: &[],
+            adds_up: source.adds_up,
         }
     }
 

@@ -87,6 +87,10 @@ pub(crate) trait SourceKind: HasLight {
 /// No product on the way to a pixel may exceed this: sums of up to 1e8 such lights are still finite in float32.
 pub(crate) const BRIGHTEST: f64 = 1e30;
 
+/// A bound of the integral of 1/r over a core of any length, seen from anywhere: lengths reach up to 1e9, and floors of
+/// distances begin at 1e-15.
+const MOST_ADDED_UP: f64 = 120.0;
+
 /// What decay and measure can make of a field on a ray through a core, and how close the ray comes to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Brightness {
@@ -107,6 +111,7 @@ impl Brightness {
             Profile::InverseCube => distance.powi(-3),
             Profile::Gaussian => 1.0,
             Profile::Smeared => 1.0 / falloff.radius,
+            Profile::Convolution => MOST_ADDED_UP,
         };
         self.most * field
     }
@@ -116,6 +121,13 @@ impl Brightness {
     fn check_light(&self, shared: &Shared<'_>, strongest: &dyn Fn(&Light) -> f64) -> Checked {
         vector("color", shared.color)?;
         let falloff = shared.falloff();
+        if falloff.profile == Profile::Convolution {
+            if !shared.adds_up {
+                let message = "adds up the light of a [[segment]]; other cores have none";
+                return Err(Fault::new("profile", message));
+            }
+            falloff.check_convolution(shared.peak)?;
+        }
         falloff.check()?;
         match shared.peak {
             Some(peak) => falloff.check_peak(peak, self.measure)?,

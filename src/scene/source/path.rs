@@ -135,7 +135,7 @@ impl LightPath {
         let step = self.shape.step();
         let pieces = match self.closed {
             true => count / step,
-            false => (count - 1) / step,
+            false => count.saturating_sub(1) / step,
         };
         let point = |k: usize| self.points[k % count];
         let piece = |i: usize| {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, source, source_struct};
+use super::{Brightness, Core, HasLight, Light, Placement, Profile, SourceKind, source, source_struct};
 use crate::scene::values::{Checked, read_vector, vector};
 
 source_struct! {
@@ -36,7 +36,8 @@ impl SourceKind for Segment {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("from", self.from)?;
         vector("to", self.to)?;
-        self.shared().check(brightness, &|light| light.coefficient.abs())
+        let strongest = |light: &Light| light.coefficient.abs();
+        self.shared().adding_up().check(brightness, &strongest)
     }
 
     fn move_core(&mut self, place: &Placement) {

@@ -55,6 +55,7 @@ macro_rules! source_struct {
                     reach: self.reach,
                     peak: self.peak,
                     layers: &self.layers,
+                    adds_up: false,
                 }
             }
 
@@ -99,6 +100,8 @@ pub(crate) struct Shared<'a> {
     pub reach: Option<f64>,
     pub peak: Option<f64>,
     pub layers: &'a [Layer],
+    /// Whether its core can be added up (`Profile::Convolution`).
+    pub adds_up: bool,
 }
 
 impl Default for Shared<'_> {
@@ -111,11 +114,20 @@ impl Default for Shared<'_> {
             reach: None,
             peak: None,
             layers: &[],
+            adds_up: false,
         }
     }
 }
 
 impl<'a> Shared<'a> {
+    /// Says that its core can be added up.
+    pub(super) fn adding_up(self) -> Self {
+        Self {
+            adds_up: true,
+            ..self
+        }
+    }
+
     pub(super) fn falloff(&self) -> Falloff {
         Falloff {
             profile: self.profile,

@@ -33,7 +33,7 @@ device_struct! {
         smooth_threshold: f32 = 16,
         kinked_threshold: f32 = 20,
         node_count: u32 = 24,
-        padding: u32 = 28,
+        absorption: f32 = 28,
     }
 }
 

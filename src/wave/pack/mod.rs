@@ -21,7 +21,7 @@ pub struct Anchor {
     pub origin: DVec3,
     /// World units.
     pub reach: f64,
-    /// `|E - S|` where light is measured by length, else 1.
+    /// `|E - S|` where light is measured by length, else 1; times a decay that is the same everywhere.
     pub measure: f64,
     /// How large a pixel is, as a share of the distance from the origin; 0 where there are none.
     pub pixel: f64,
@@ -39,7 +39,7 @@ impl Anchor {
         Self {
             origin,
             reach,
-            measure,
+            measure: measure * even_decay(scene),
             pixel: pixel(scene),
             tolerance: scene.integration.method.tolerance(),
         }
@@ -52,6 +52,12 @@ impl Anchor {
     fn emission(&self, coefficient: f64, color: DVec3) -> [f32; 4] {
         vector(color * (coefficient * self.measure))
     }
+}
+
+/// Returns the decay of a scene where it is the same everywhere, else 1.
+pub fn even_decay(scene: &Scene) -> f64 {
+    let even = scene.decay.filter(|decay| decay.power == 0);
+    even.map_or(1.0, |decay| decay.alpha)
 }
 
 /// Returns how large a pixel is, as a share of the distance from the eye.
@@ -163,6 +169,8 @@ pub struct SourceFacts {
     pub has_squares: bool,
     /// Whether any has no closed form for how it falls off.
     pub has_shapes: bool,
+    /// Whether any adds up the light of all points of its core.
+    pub has_convolutions: bool,
     /// Whether any has a sharper peak than 1 over the distance.
     pub has_sharp_peaks: bool,
     /// Whether some may cancel others.
@@ -178,6 +186,7 @@ impl SourceFacts {
                 stamp,
                 has_squares: scene.any_falloff(|it| it.profile == Profile::InverseSquare),
                 has_shapes: scene.any_falloff(|it| it.is_shaped()),
+                has_convolutions: scene.any_falloff(|it| it.profile == Profile::Convolution),
                 has_sharp_peaks: scene.any_falloff(|it| it.is_sharp()),
                 has_both_signs: scene.has_light_of_both_signs(),
             };
@@ -209,6 +218,7 @@ fn falloff(falloff: Falloff) -> layout::Falloff {
             Profile::InverseCube => 2,
             Profile::Gaussian => 3,
             Profile::Smeared => 4,
+            Profile::Convolution => 5,
         },
         radius2: (radius * radius) as f32,
         reach2: reach2 as f32,

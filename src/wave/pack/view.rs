@@ -1,12 +1,14 @@
 //! Rays, and what is integrated along them, as the kernels read them.
 
+use std::f64::consts::LOG2_E;
+
 use bytemuck::Zeroable;
 use glam::DVec3;
 
 use super::layout::{Integrand, RayRecord, View};
 use super::{fine, rest};
 use crate::image::{DepthAlong, DepthImage};
-use crate::scene::{Ray, Scene, ViewPlane};
+use crate::scene::{Decay, Ray, Scene, ViewPlane};
 use crate::wave::Rule;
 
 /// The share by which a depth must fall short of the projection plane to hide all of a ray for certain, in float32.
@@ -40,15 +42,22 @@ pub fn view(plane: &ViewPlane, scene: &Scene) -> View {
 /// Packs what is integrated, by a rule or by this many nodes.
 pub fn integrand(scene: &Scene, rule: &Rule, node_count: u32) -> Integrand {
     let softening = scene.integration.softening;
+    // What is the same everywhere is in every emission.
+    let decay = scene.decay.filter(|decay| decay.power > 0);
+    let strength = |decay: Decay| match decay.power {
+        2 => decay.alpha / decay.beta,
+        power => decay.alpha * decay.beta.powi(1 - power as i32),
+    };
+    let kappa = scene.absorption.map_or(0.0, |absorption| absorption.kappa);
     Integrand {
         softening2: (softening * softening) as f32,
-        decay_strength: scene.decay.map_or(1.0, |decay| decay.alpha / decay.beta) as f32,
-        decay_beta: scene.decay.map_or(0.0, |decay| decay.beta) as f32,
-        decay_per_beta: scene.decay.map_or(0.0, |decay| 1.0 / decay.beta) as f32,
+        decay_strength: decay.map_or(1.0, strength) as f32,
+        decay_beta: decay.map_or(0.0, |decay| decay.beta) as f32,
+        decay_per_beta: decay.map_or(0.0, |decay| 1.0 / decay.beta) as f32,
         smooth_threshold: rule.smooth_threshold,
         kinked_threshold: rule.kinked_threshold,
         node_count,
-        padding: 0,
+        absorption: (kappa * LOG2_E) as f32,
     }
 }
 
