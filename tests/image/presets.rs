@@ -2,7 +2,7 @@
 
 use energywave::image::ImageSize;
 use energywave::scene::Preset;
-use energywave::{RadianceImage, Scene, reference};
+use energywave::{RadianceImage, Renderer, Scene, reference};
 
 use crate::common::{self, difference, renderer};
 
@@ -45,10 +45,48 @@ fn lit(mut image: RadianceImage) -> RadianceImage {
     image
 }
 
+/// Finds a white core, a coloured halo and a border that is mostly black.
+fn is_a_picture(renderer: &mut Renderer, name: &str, scene: &Scene) {
+    let mut scene = scene.clone();
+    scene.image = LARGER;
+    let picture = renderer.render(&scene).unwrap().tone_map(&scene.display);
+    let row = LARGER.width as usize;
+    let pixels: Vec<[u8; 3]> = picture
+        .as_slice()
+        .chunks_exact(3)
+        .map(|p| [p[0], p[1], p[2]])
+        .collect();
+    let least = |pixel: &[u8; 3]| pixel.iter().copied().min().unwrap_or(0);
+    let most = |pixel: &[u8; 3]| pixel.iter().copied().max().unwrap_or(0);
+    let white = pixels.iter().filter(|pixel| least(pixel) >= WHITE).count();
+    let coloured = pixels
+        .iter()
+        .filter(|pixel| most(pixel) - least(pixel) > 80)
+        .count();
+    let at_border = |i: &usize| {
+        i.is_multiple_of(row) || i % row == row - 1 || *i < row || *i >= pixels.len() - row
+    };
+    let border: Vec<usize> = (0..pixels.len()).filter(at_border).collect();
+    let black = border
+        .iter()
+        .filter(|i| most(&pixels[**i]) <= BLACK)
+        .count();
+    println!(
+        "{name}: {white} white, {coloured} coloured, {black} of {} black",
+        border.len()
+    );
+    assert!(
+        white > 0 && coloured > 20 && 2 * black > border.len(),
+        "{name}"
+    );
+}
+
+// One test, so that the programs of all these kinds are compiled once.
 #[test]
-fn every_preset_is_drawn_as_the_reference_draws_it() {
+fn every_preset_is_drawn_as_the_reference_draws_it_and_is_a_picture() {
     let mut renderer = renderer(common::device().lanes, "");
     for (name, scene) in scenes() {
+        is_a_picture(&mut renderer, name, &scene);
         let tolerance = common::tolerance(&scene);
         let truth = lit(reference::render(&scene).unwrap());
         let found = difference(&lit(renderer.render(&scene).unwrap()), &truth);
@@ -63,43 +101,5 @@ fn every_preset_is_drawn_as_the_reference_draws_it() {
         other.camera.fov_y *= 1.01;
         let off = difference(&lit(renderer.render(&other).unwrap()), &truth);
         assert!(off.max > 10.0 * tolerance, "{name}: {off:?}");
-    }
-}
-
-#[test]
-fn every_preset_has_a_white_core_a_coloured_halo_and_a_black_border() {
-    let mut renderer = renderer(common::device().lanes, "");
-    for (name, mut scene) in scenes() {
-        scene.image = LARGER;
-        let picture = renderer.render(&scene).unwrap().tone_map(&scene.display);
-        let row = LARGER.width as usize;
-        let pixels: Vec<[u8; 3]> = picture
-            .as_slice()
-            .chunks(4)
-            .map(|p| [p[0], p[1], p[2]])
-            .collect();
-        let least = |pixel: &[u8; 3]| pixel.iter().copied().min().unwrap_or(0);
-        let most = |pixel: &[u8; 3]| pixel.iter().copied().max().unwrap_or(0);
-        let white = pixels.iter().filter(|pixel| least(pixel) >= WHITE).count();
-        let coloured = pixels
-            .iter()
-            .filter(|pixel| most(pixel) - least(pixel) > 80)
-            .count();
-        let at_border = |i: &usize| {
-            i.is_multiple_of(row) || i % row == row - 1 || *i < row || *i >= pixels.len() - row
-        };
-        let border: Vec<usize> = (0..pixels.len()).filter(at_border).collect();
-        let black = border
-            .iter()
-            .filter(|i| most(&pixels[**i]) <= BLACK)
-            .count();
-        println!(
-            "{name}: {white} white, {coloured} coloured, {black} of {} black",
-            border.len()
-        );
-        assert!(
-            white > 0 && coloured > 20 && 2 * black > border.len(),
-            "{name}"
-        );
     }
 }
