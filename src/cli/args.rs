@@ -25,6 +25,8 @@ const EXIT_CODES: &str = "Exit codes: 0 success, 2 usage, 3 scene or input file,
 pub enum Command {
     /// Draw a scene
     Render(RenderArguments),
+    /// Write a scene to begin with: a preset, with comments that say what to change
+    New(NewArguments),
     /// List the devices, which one is the default and why, and what is missing
     Devices(DevicesArguments),
     /// Measure the paper's speed tables, or a scene
@@ -52,6 +54,22 @@ pub struct RenderArguments {
     /// No progress bar, and of the depths only what is likely wrong
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct NewArguments {
+    /// Name of the preset, one of those that --list shows
+    #[arg(required_unless_present = "list")]
+    pub name: Option<String>,
+    /// Scene file to write; - is standard output [default: NAME.toml]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write in the place of a file that is there
+    #[arg(long)]
+    pub force: bool,
+    /// List the presets, a line for each
+    #[arg(long, conflicts_with_all = ["name", "output", "force"])]
+    pub list: bool,
 }
 
 #[derive(Debug, Args)]

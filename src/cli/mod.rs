@@ -5,6 +5,7 @@ mod bench;
 mod compare;
 mod devices;
 mod environment;
+mod new;
 mod progress;
 mod render;
 mod verify;
@@ -48,6 +49,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
     warnings.iter().for_each(|warning| warn(warning));
     let outcome = match arguments.command {
         Command::Render(arguments) => render::run(arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),

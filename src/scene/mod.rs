@@ -17,6 +17,8 @@ mod in_view;
 mod integration;
 pub(crate) mod kinds;
 mod list;
+#[cfg(feature = "files")]
+mod preset;
 mod ray;
 mod source;
 mod stamp;
@@ -34,6 +36,8 @@ pub use file::MethodKeys;
 pub use group::{Group, Repeat, Rotation};
 pub use integration::{Absorption, CORE_FLOOR, Decay, Integration, Measure, Method, Sampling};
 pub use list::List;
+#[cfg(feature = "files")]
+pub use preset::Preset;
 pub use ray::{Ray, ViewPlane};
 pub use source::*;
 pub(crate) use stamp::SourcesStamp;

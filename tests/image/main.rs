@@ -18,7 +18,9 @@ mod images; // bounds the worst pixel of the Simpson rule
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
 mod layers; // holds several lights of one core to as many sources
 mod parts; // draws rows, rays and changed scenes as the whole image has them
+mod path_core; // what a path is by definition
 mod paths; // holds paths to their definition
+mod presets; // draws every preset, and looks at its whites and blacks
 mod rays; // compares single rays with integrals that are known to nine digits
 mod search; // draws what examples/hard_scenes has found
 mod segment; // holds segments to their definition

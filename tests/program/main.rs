@@ -18,6 +18,8 @@ mod groups; // has groups placed as the sources that they stand for
 mod messages; // is told what to write instead, and nothing raw or long
 #[cfg(unix)] // as cli
 mod outputs; // writes to links, pipes and devices, and reads scenes from pipes
+#[cfg(unix)] // as cli
+mod presets; // writes every preset, and nothing over what is there
 mod scene_files; // reads again what was written
 mod verify; // checks known rays, past sources and past whole scenes
 mod warnings; // is told what a scene was hardly meant to say
