@@ -71,6 +71,7 @@ pub(super) fn plain(language: Language, key: String, message: &str) -> (String, 
 }
 
 /// Says how several sources of a kind, or groups, are written; `name` is the last part of their key.
+#[cfg_attr(not(feature = "json"), allow(unused_variables))] // JSON repeats the name
 fn several(language: Language, key: &str, name: &str) -> String {
     match language {
         Language::Toml => {
