@@ -13,6 +13,7 @@ fn main() -> energywave::Result<()> {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
     scene.tori.push(Torus {
         color: DVec3::new(0.15, 0.35, 1.0),
+        coefficient: 0.01,
         ..Torus::new(0.9)
     });
     let radiance = Renderer::new(&Device::best()?)?.render(&scene)?;

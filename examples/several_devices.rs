@@ -19,6 +19,7 @@ fn main() -> energywave::Result<()> {
     };
     scene.curves.push(Curve {
         color: DVec3::new(0.15, 1.0, 0.35),
+        coefficient: 0.01,
         ..Curve::new([
             DVec3::new(-1.2, 0.0, -0.6),
             DVec3::new(0.0, 0.4, 1.6),

@@ -29,6 +29,7 @@
 //! let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
 //! scene.tori.push(Torus {
 //!     color: DVec3::new(0.15, 0.35, 1.0),
+//!     coefficient: 0.01,
 //!     ..Torus::new(0.9)
 //! });
 //! let mut renderer = Renderer::new(&Device::best()?)?; // keeps kernels and buffers from frame to frame
