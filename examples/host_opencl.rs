@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn error::Error>> {
     for step in 0..3 {
         scene.tori = vec![Torus {
             color: DVec3::new(1.0, 0.5, 0.15),
-            coefficient: 0.01,
+            coefficient: 0.008,
             ..Torus::new(0.7 + 0.15 * f64::from(step))
         }]
         .into();
