@@ -5,6 +5,7 @@
 //! may get further fields: write `..Torus::new(0.9)` and the like.
 
 mod camera;
+pub(crate) mod chain;
 mod colors;
 #[cfg(feature = "files")]
 mod depth_report;
@@ -29,6 +30,7 @@ mod warnings;
 use glam::DVec3;
 
 pub use camera::Camera;
+pub use chain::Dashes;
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;
 #[cfg(feature = "files")]

@@ -23,6 +23,7 @@ const FILES: &[SourceFile<'static>] = embed!(
     "wave/source/curve/panels.h",
     "wave/source/curve/peaks.h",
     "wave/source/names.h",
+    "wave/source/path/light.h",
     "wave/source/path/nearest.h",
     "wave/source/path/next.h",
     "wave/source/path/rows.h",

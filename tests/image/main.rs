@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod along;
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
 mod convolution; // holds light that adds up over a core to its definition

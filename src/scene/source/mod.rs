@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use glam::DVec3;
 
 use super::Measure;
+use super::chain::{LightAlong, LitChain};
 use super::group::Placement;
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
@@ -18,7 +19,7 @@ pub(super) use core::Core;
 pub use falloff::{Falloff, Profile};
 pub use layer::Layer;
 use layer::read_layers;
-pub(crate) use shared::{HasLight, Shared};
+pub(crate) use shared::{CoreLight, HasLight, Shared};
 use shared::{source, source_struct};
 
 macro_rules! declare_kinds {
@@ -70,6 +71,11 @@ pub(crate) trait SourceKind: HasLight {
 
     /// Returns where its core is, of a source whose values are right.
     fn core(&self) -> Core;
+
+    /// Returns the chain that it is drawn as where light changes along its core; `None`: it is drawn as it is.
+    fn as_chain(&self) -> Option<LitChain> {
+        None
+    }
 
     /// Makes a source of this kind at about `place`, for the self-test of kernels.
     fn specimen(place: DVec3, profile: Profile) -> Self;
@@ -151,8 +157,20 @@ impl Brightness {
     }
 }
 
+/// Calls `add` with the emission of all lights of a source along its core.
+fn emissions_along(lights: &[LightAlong], add: &mut dyn FnMut(DVec3)) {
+    for LightAlong { light, values, .. } in lights {
+        match values.is_empty() {
+            true => add(light.emission()),
+            false => values
+                .iter()
+                .for_each(|(_, value)| add(*value * light.emission())),
+        }
+    }
+}
+
 /// Returns the name of an item of a list in a file, such as `intensity[3]`.
-fn item(list: &str, index: usize) -> Cow<'static, str> {
+pub(super) fn item(list: &str, index: usize) -> Cow<'static, str> {
     format!("{list}[{index}]").into()
 }
 

@@ -12,7 +12,9 @@ pub use view::{integrand, ray, view};
 
 use crate::opencl::device_struct;
 use crate::scene::kinds::{KIND_COUNT, for_each_kind};
-use crate::scene::{self, Falloff, HasLight, Light, Measure, Profile, Scene, SourcesStamp};
+use crate::scene::{
+    self, Falloff, HasLight, Light, Measure, Profile, Scene, SourceKind, SourcesStamp,
+};
 
 /// Where the float32 coordinates begin, how far the rays go from there, and what every emission is multiplied with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,21 +88,15 @@ trait Pack {
     fn pack(&self, light: &Light, anchor: &Anchor, rows: &mut Rows) -> Self::Device;
 }
 
-/// The same for kinds whose light may need several entries of the device's list.
+/// The same for all lights of a source.
 trait PackInto<Device> {
-    /// Packs the source with one of its lights.
-    fn pack_into(&self, list: &mut Vec<Device>, light: &Light, anchor: &Anchor, rows: &mut Rows);
+    /// Packs the source with all of its lights; nothing of a kind that is always drawn as a chain.
+    fn pack_into(&self, _: &mut Vec<Device>, _: &Anchor, _: &mut Rows) {}
 }
 
-impl<Source: Pack> PackInto<Source::Device> for Source {
-    fn pack_into(
-        &self,
-        list: &mut Vec<Source::Device>,
-        light: &Light,
-        anchor: &Anchor,
-        rows: &mut Rows,
-    ) {
-        list.push(self.pack(light, anchor, rows));
+impl<Source: Pack + HasLight> PackInto<Source::Device> for Source {
+    fn pack_into(&self, list: &mut Vec<Source::Device>, anchor: &Anchor, rows: &mut Rows) {
+        list.extend(self.lights().map(|light| self.pack(&light, anchor, rows)));
     }
 }
 
@@ -129,14 +125,13 @@ macro_rules! define_sources {
                 let rows = &mut self.rows;
                 rows.list.clear();
                 rows.has_series = false;
-                $(
-                    self.$list.clear();
-                    for source in scene.$list.iter() {
-                        for light in source.lights() {
-                            source.pack_into(&mut self.$list, &light, anchor, rows);
-                        }
+                $(self.$list.clear();)*
+                $(for source in &scene.$list {
+                    match source.as_chain() {
+                        Some(chain) => path::pack_chain(&chain, &mut self.paths, anchor, rows),
+                        None => source.pack_into(&mut self.$list, anchor, rows),
                     }
-                )*
+                })*
             }
 
             /// Returns how many there are of each kind, in the order of the table.
