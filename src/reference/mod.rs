@@ -130,6 +130,23 @@ pub fn simpson(source: &Source, ray: &Ray, integrand: &Integrand, end: f64, divi
         .sum()
 }
 
+/// Takes the same integral by one sample in each of equal strata, at the same random place in all of them (Cook 1986).
+fn jittered(integrand: impl Fn(f64) -> f64, end: f64, divisions: u32, random: f64) -> f64 {
+    let length = end / f64::from(divisions);
+    let sample = |k: u32| length * integrand(length * (f64::from(k) + random));
+    (0..divisions).map(sample).sum()
+}
+
+/// Returns the random number, in `[0,1)`, of a pixel or ray: that of the devices, `cl/random.h`.
+fn random(number: u32, seed: u32) -> f64 {
+    let hash = |value: u32| {
+        let state = value.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
+        (word >> 22) ^ word
+    };
+    f64::from(hash(hash(number).wrapping_add(seed)) >> 8) / f64::from(1 << 24)
+}
+
 /// Gives parameter and weight of each of the `divisions + 1` samples of the composite Simpson rule over `[0,1]`.
 fn simpson_nodes(divisions: u32) -> impl Iterator<Item = (f64, f64)> {
     let n = f64::from(divisions);
@@ -226,11 +243,11 @@ impl Tracer {
         let end = scene.depth.as_ref().map_or(1.0, |depth| {
             plane.end(&ray, depth.as_slice()[index], depth.along())
         });
-        self.radiance(&ray, end)
+        self.radiance(&ray, end, index as u32)
     }
 
-    /// Returns the linear RGB along a ray, over s in `[0,end]`.
-    pub(crate) fn radiance(&self, ray: &Ray, end: f64) -> DVec3 {
+    /// Returns the linear RGB along a ray, over s in `[0,end]`; `number` is that of its pixel, or in its list.
+    pub(crate) fn radiance(&self, ray: &Ray, end: f64, number: u32) -> DVec3 {
         let measure = match self.measure {
             Measure::Parameter => 1.0,
             Measure::Length => ray.span.length(),
@@ -241,6 +258,10 @@ impl Tracer {
                 Method::Simpson { divisions } => {
                     simpson(source, ray, &self.integrand, end, divisions)
                 }
+                Method::Jittered { divisions, seed } => {
+                    let at = |s| self.integrand.at(source, ray, s);
+                    jittered(at, end, divisions, random(number, seed))
+                }
             };
             source.emission * integral * measure
         };
@@ -249,10 +270,10 @@ impl Tracer {
 
     /// Returns how many pixels take some tenths of a second, at 50 ns a sample.
     fn band_len(&self) -> usize {
-        let samples = match self.method {
-            Method::Exact { .. } => 500,
-            Method::Simpson { divisions } => divisions as usize + 1,
-        };
+        let samples = self
+            .method
+            .samples()
+            .map_or(500, |samples| samples as usize);
         (10_000_000 / (samples * self.sources.len().max(1))).clamp(16, 16384)
     }
 }

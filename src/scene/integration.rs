@@ -124,6 +124,15 @@ pub enum Method {
         /// Number of equal divisions, even, 2 to 65536.
         divisions: u32,
     },
+    /// Stratified samples (Cook 1986): one in each of equal divisions, at the same random place in all divisions of a
+    /// ray. For comparison with the Simpson rule: what that makes rings, here is grain.
+    Jittered {
+        /// Number of equal divisions, 1 to 65536.
+        divisions: u32,
+        /// Chooses the random numbers: a pixel's is a function of it and of the pixel's number, by rows from the top
+        /// left; that of a ray that is no pixel's, of its place in the list.
+        seed: u32,
+    },
     /// The integral itself.
     Exact {
         /// Relative error aimed at, 1e-12 to 1, 1 excluded.
@@ -149,19 +158,20 @@ impl Method {
         }
     }
 
-    /// Returns its name in files: `simpson` or `exact`.
+    /// Returns its name in files: `simpson`, `jittered` or `exact`.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Simpson { .. } => "simpson",
+            Self::Jittered { .. } => "jittered",
             Self::Exact { .. } => "exact",
         }
     }
 
-    /// Returns the relative error aimed at; the default's for the Simpson rule, which aims at none.
+    /// Returns the relative error aimed at; the default's for sums, which aim at none.
     pub(crate) fn tolerance(&self) -> f64 {
         match *self {
-            Self::Simpson { .. } => 1e-3,
+            Self::Simpson { .. } | Self::Jittered { .. } => 1e-3,
             Self::Exact { tolerance, .. } => tolerance,
         }
     }
@@ -169,7 +179,7 @@ impl Method {
     /// Returns where integrals are taken.
     pub(crate) fn sampling(&self) -> Sampling {
         match *self {
-            Self::Simpson { .. } => Sampling::Pixels,
+            Self::Simpson { .. } | Self::Jittered { .. } => Sampling::Pixels,
             Self::Exact { sampling, .. } => sampling,
         }
     }
@@ -178,14 +188,24 @@ impl Method {
     #[cfg(feature = "papers")]
     pub(crate) fn sampling_or_default(&self) -> Sampling {
         match *self {
-            Self::Simpson { .. } => Sampling::default(),
+            Self::Simpson { .. } | Self::Jittered { .. } => Sampling::default(),
             Self::Exact { sampling, .. } => sampling,
+        }
+    }
+
+    /// Returns how many samples a ray takes of a light; `None` where the light decides that.
+    pub(crate) fn samples(&self) -> Option<u32> {
+        match *self {
+            Self::Simpson { divisions } => Some(divisions + 1),
+            Self::Jittered { divisions, .. } => Some(divisions),
+            Self::Exact { .. } => None,
         }
     }
 
     pub(super) fn check(&self) -> Checked {
         match *self {
             Self::Simpson { divisions } => check_divisions(divisions),
+            Self::Jittered { divisions, .. } => check_strata(divisions),
             Self::Exact { tolerance, .. } => check_tolerance(tolerance),
         }
     }
@@ -203,6 +223,14 @@ pub(super) fn check_divisions(divisions: u32) -> Checked {
         return Ok(());
     }
     let message = format!("{divisions}; Simpson's rule needs an even number from 2 to 65536");
+    Err(Fault::new("divisions", message))
+}
+
+pub(super) fn check_strata(divisions: u32) -> Checked {
+    if (1..=65536).contains(&divisions) {
+        return Ok(());
+    }
+    let message = format!("{divisions}; stratified samples need 1 to 65536 divisions");
     Err(Fault::new("divisions", message))
 }
 

@@ -47,6 +47,7 @@ pub(crate) enum Rays {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Variant {
     Simpson,
+    Jittered,
     Exact {
         /// Of the rule: what its kernels are built with.
         nodes: u32,
@@ -144,8 +145,10 @@ fn task_text(task: &Task) -> (&'static str, String) {
 /// Returns what that is built with, where `workers` work-items share a tile.
 fn task_definitions(workers: u32, counts_samples: bool, task: &Task, rule: &Rule) -> String {
     let mut definitions = common_definitions(counts_samples);
-    if let Variant::Exact { .. } = task.method {
-        definitions += &rule.definitions();
+    match task.method {
+        Variant::Simpson => {}
+        Variant::Jittered => definitions += " -D JITTERED",
+        Variant::Exact { .. } => definitions += &rule.definitions(),
     }
     if task.has_squares {
         definitions += " -D INVERSE_SQUARES";

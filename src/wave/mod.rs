@@ -12,7 +12,7 @@ mod partition;
 mod plan;
 mod rule;
 mod self_test;
-mod simpson;
+mod sums;
 mod tiles;
 
 use std::collections::VecDeque;
@@ -188,6 +188,7 @@ impl Wave {
         Task {
             method: match scene.integration.method {
                 Method::Simpson { .. } => Variant::Simpson,
+                Method::Jittered { .. } => Variant::Jittered,
                 Method::Exact { .. } => Variant::Exact {
                     nodes: rule.nodes,
                     coarse: rule.coarse,
@@ -228,8 +229,9 @@ impl Wave {
                 // Of a ray that ends early, only the kernel knows where its nodes are.
                 let is_known = !task.has_depth && task.fading.is_none();
                 let decay = scene.decay.filter(|decay| is_known && decay.power > 0);
-                simpson::nodes(divisions, decay)
+                sums::simpson(divisions, decay)
             }
+            Method::Jittered { divisions, .. } => sums::strata(divisions),
             Method::Exact { .. } => Vec::new(),
         };
         let integrand = pack::integrand(scene, &rule, nodes.len() as u32);

@@ -185,6 +185,10 @@ fn integration(task: Task, softening: f64) -> Integration {
     };
     let method = match task.method {
         Variant::Simpson => Method::Simpson { divisions: 64 },
+        Variant::Jittered => Method::Jittered {
+            divisions: 64,
+            seed: 3,
+        },
         Variant::Exact { nodes, .. } => Method::Exact {
             tolerance: if nodes <= 4 { 0.1 } else { 1e-3 },
             sampling,

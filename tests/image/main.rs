@@ -15,6 +15,7 @@ mod fading_forms; // holds the reference to closed forms of points and lines tha
 mod figures; // draws every scene by every method in the form of the device
 mod hard_scenes; // takes the method `exact` through cores, along them, and to extreme numbers
 mod images; // bounds the worst pixel of the Simpson rule
+mod jittered; // holds stratified samples to their definition, and shows what they gain
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
 mod layers; // holds several lights of one core to as many sources
 mod parts; // draws rows, rays and changed scenes as the whole image has them

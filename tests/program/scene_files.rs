@@ -143,12 +143,15 @@ fn rich_scenes() -> Vec<Scene> {
         tolerance: 1.0 / 3000.0,
         sampling,
     };
+    let jittered = |divisions, seed| Method::Jittered { divisions, seed };
     let methods = [
         Method::simpson(2),
         Method::simpson(65536),
         exact(Sampling::Tiles),
         exact(Sampling::Pixels),
         Method::default(),
+        jittered(1, 0),
+        jittered(65535, u32::MAX),
     ];
     let mut scenes = Vec::new();
     for (index, method) in methods.into_iter().cycle().take(60).enumerate() {
