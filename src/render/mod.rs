@@ -16,7 +16,7 @@ use crate::error::{Error, Result, SceneError};
 use crate::image::{RadianceImage, kept_image};
 use crate::opencl::{MappedFilm, RendererOptions};
 use crate::reference::{self, Tracer};
-use crate::scene::{CheckedSources, Measure, Ray, Scene};
+use crate::scene::{CheckedSources, Ray, Scene};
 use device::Backend;
 use one::{DeviceRenderer, Rows};
 use several::SeveralRenderer;
@@ -290,10 +290,7 @@ impl Renderer {
                 return Ok(rays.iter().zip(0..).map(radiance).collect());
             }
         };
-        let measure = |ray: &Ray| match scene.integration.measure {
-            Measure::Parameter => 1.0,
-            Measure::Length => ray.span.length(),
-        };
+        let measure = |ray: &Ray| scene.integration.scale(ray.span.length());
         let colors = pixels.iter().zip(rays).map(|(pixel, ray)| {
             let [red, green, blue, _] = *pixel;
             [red, green, blue].map(|light| measure(ray) * f64::from(light))

@@ -101,6 +101,8 @@ pub struct Integration {
     pub method: Method,
     /// Over what the integral runs.
     pub measure: Measure,
+    /// What a pixel has of the integrals.
+    pub reduction: Reduction,
     /// Softening radius epsilon, world units: the squared distance to every core grows by its square.
     pub softening: f64,
 }
@@ -110,7 +112,18 @@ impl Default for Integration {
         Self {
             method: Method::default(),
             measure: Measure::Length,
+            reduction: Reduction::Sum,
             softening: 0.0,
+        }
+    }
+}
+
+impl Integration {
+    /// Returns what the light of a ray of this length, world units, is multiplied with if it was taken over s.
+    pub(crate) fn scale(&self, length: f64) -> f64 {
+        match self.measure {
+            Measure::Parameter => 1.0,
+            Measure::Length => self.reduction.of(length),
         }
     }
 }
@@ -266,4 +279,41 @@ pub enum Measure {
     Parameter,
     /// Length in world units: `|E - S|` times as much (2010, 2006).
     Length,
+}
+
+/// What a pixel has of the integrals along its ray.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Reduction {
+    /// Their sum (2015).
+    #[default]
+    Sum,
+    /// Colour times coefficient times the root of the integral of the squared field, times the decay: light that lies
+    /// along a ray stands out less (2015, section 5.4). Such light does not add up: for scenes of one light.
+    Rms,
+}
+
+impl Reduction {
+    /// Returns what becomes of an integral, for [`Reduction::Rms`] of squares.
+    pub(crate) fn of(self, integral: f64) -> f64 {
+        match self {
+            Self::Sum => integral,
+            Self::Rms => integral.sqrt(),
+        }
+    }
+
+    /// Returns what is integrated of a field.
+    pub(crate) fn summand(self, field: f64) -> f64 {
+        match self {
+            Self::Sum => field,
+            Self::Rms => field * field,
+        }
+    }
+
+    #[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
+    #[cfg(feature = "files")]
+    pub(super) fn is_sum(&self) -> bool {
+        *self == Self::Sum
+    }
 }

@@ -1,4 +1,5 @@
-//! The nodes of the kernels' sums: the composite Simpson rule (Watanabe, Abe, Konno 2015, eq. 23), and strata (Cook 1986).
+//! The nodes of the kernels' sums: the composite Simpson rule (Watanabe, Abe, Konno 2015, eq. 23), and strata (Cook
+//! 1986).
 
 use super::pack::layout::Node;
 use crate::scene::Decay;

@@ -11,7 +11,7 @@ use crate::common::layer::{self, LAYERS, Layer};
 use crate::common::program::{Folder, SCENE, device, expect};
 use energywave::Ray;
 use energywave::image::DepthAlong;
-use energywave::scene::{Method, Sampling};
+use energywave::scene::{Method, Reduction, Sampling};
 use energywave::{Error, Renderer, RendererOptions, Scene};
 use glam::DVec3;
 
@@ -63,11 +63,20 @@ fn draws() -> Vec<(&'static str, Scene)> {
     hidden.depth = Some(common::depths(&hidden, DepthAlong::Ray, |x, _| {
         3.0 + f64::from(x)
     }));
+    let jittered = Method::Jittered {
+        divisions: common::DIVISIONS,
+        seed: 1,
+    };
+    let mut roots = common::squared(&with(tiles));
+    roots.spheres.clear();
+    roots.integration.reduction = Reduction::Rms;
     vec![
         ("simpson", with(Method::simpson(common::DIVISIONS))),
+        ("jittered", with(jittered)),
         ("pixels", with(pixels)),
         ("tiles", with(tiles)),
         ("depth", hidden),
+        ("roots", roots),
         ("rays", lit),
     ]
 }

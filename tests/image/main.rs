@@ -23,6 +23,7 @@ mod path_core; // what a path is by definition
 mod paths; // holds paths to their definition
 mod presets; // draws every preset, and looks at its whites and blacks
 mod rays; // compares single rays with integrals that are known to nine digits
+mod rms; // holds roots of integrals of squares to their definition
 mod search; // draws what examples/hard_scenes has found
 mod segment; // holds segments to their definition
 mod shapes; // holds how fields fall off to their definition

@@ -1,7 +1,8 @@
 //! The ways to integrate, as files and the program's options choose them, and what does not go together.
 
-use energywave::scene::Method;
-use energywave::{ErrorKind, RadianceImage, Scene};
+use energywave::scene::{Measure, Method, Reduction};
+use energywave::{Device, ErrorKind, RadianceImage, Ray, Renderer, Scene};
+use glam::DVec3;
 
 use crate::bad_scenes::CAMERA;
 use crate::common::program::{Folder, expect};
@@ -37,6 +38,71 @@ const BAD: &[(&str, &str, &str)] = &[
         "[integration]\nmethod = \"jitter\"\n",
         "5:10: integration.method",
         "expected one of `simpson`, `jittered`, `exact`",
+    ),
+    (
+        "[integration]\nreduction = \"mean\"\n",
+        "5:13: integration.reduction",
+        "expected `sum` or `rms`",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[sphere]]\n[[torus]]\nmajor_radius = 1\n",
+        "5:13: integration.reduction",
+        "the scene has 2 sources: leave one, or write \"sum\"",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[group]]\nrepeat = { count = 3, step = [1, 0, 0] }\n[[group.sphere]]\n",
+        "5:13: integration.reduction",
+        "the scene has 3 sources",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[sphere]]\nlayers = [{ radius = 0.1 }, { radius = 0.2 }]\n",
+        "7:10: sphere[0].layers",
+        "takes the root of one light",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[group]]\n[[group.beam]]\ndirection = [1, 0, 0]\ntaper_length = 0.4\n",
+        "9:16: group[0].beam[0].taper_length",
+        "even along its core: leave this out",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[beam]]\ndirection = [1, 0, 0]\nsphere_coefficient = 0.4\n",
+        "8:22: beam[0].sphere_coefficient",
+        "one light",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[beam]]\ndirection = [1, 0, 0]\ncap_coefficient = 0.4\n",
+        "8:19: beam[0].cap_coefficient",
+        "one light",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[curve]]\ncontrol_points = [[0, 0, 0], [1, 1, 1], [1, 2, 1]]\nintensity = [1, 2, 3]\n",
+        "8:13: curve[0].intensity",
+        "even along its core",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[path]]\npoints = [[0, 0, 0], [1, 1, 1]]\nintensity = [1, 2]\n",
+        "8:13: path[0].intensity",
+        "even along its core",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[path]]\npoints = [[0, 0, 0], [1, 1, 1]]\ncolors = [\"#ff0000\", \"#00ff00\"]\n",
+        "8:10: path[0].colors",
+        "even along its core",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[sphere]]\nradius = 0.1\npeak = 2\n",
+        "8:8: sphere[0].peak",
+        "give a coefficient",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[segment]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nprofile = \"convolution\"\n",
+        "9:11: segment[0].profile",
+        "choose another profile, or reduction = \"sum\"",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[sphere]]\nprofile = \"inverse-cube\"\ncoefficient = 1000\n",
+        "8:15: sphere[0].coefficient",
+        "its square comes to",
     ),
 ];
 
@@ -89,4 +155,34 @@ fn the_program_jitters_when_asked_to() {
     assert!(exact == draw("g.exr", &["--method", "exact"]) && exact != own);
     let conflict = ["--method", "jittered", "--sampling", "tiles"];
     expect(&folder.render("h.exr", &conflict), 2, "every pixel");
+}
+
+#[test]
+fn a_root_is_written_and_read_and_has_an_exposure_that_fits() {
+    let scene = |reduction: &str| {
+        let source = "[[sphere]]\nprofile = \"inverse\"\nradius = 0.02\n";
+        Scene::from_toml(&format!("{CAMERA}[integration]\n{reduction}{source}")).unwrap()
+    };
+    let (sum, root) = (scene(""), scene("reduction = \"rms\"\n"));
+    assert_eq!(sum.integration.reduction, Reduction::Sum);
+    assert_eq!(root.integration.reduction, Reduction::Rms);
+    for text in [sum.to_toml().unwrap(), sum.to_json().unwrap()] {
+        assert!(!text.contains("reduction"), "{text}");
+    }
+    assert_eq!(Scene::from_toml(&root.to_toml().unwrap()).unwrap(), root);
+    assert_eq!(Scene::from_json(&root.to_json().unwrap()).unwrap(), root);
+    // Light is 1 beside the core, a share of the picture's height away from it.
+    let mut device = Renderer::new(&Device::reference()).unwrap();
+    let height = 2.0 * 20.0_f64.sqrt() * 22.5_f64.to_radians().tan();
+    for measure in [Measure::Length, Measure::Parameter] {
+        let mut root = root.clone();
+        root.integration.measure = measure;
+        root.display.exposure = root.fitting_exposure();
+        let eye = root.camera.eye;
+        let to = DVec3::new(0.008 * height, 0.0, 0.0) - eye;
+        let ray = Ray::between(eye, eye + to.normalize() * root.ray_length());
+        let light = device.integrate(&root, &[ray]).unwrap()[0][0];
+        let shown = light * root.display.exposure.exp2();
+        assert!((0.9..1.1).contains(&shown), "{measure:?}: {shown}");
+    }
 }

@@ -7,7 +7,7 @@ use energywave::image::{DepthAlong, DepthImage, ImageSize, ToneMap};
 use energywave::internals::KINDS;
 use energywave::scene::{
     Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Integration, Layer, LightPath, Measure, Method,
-    PathShape, Profile, Sampling, Segment, Sphere, Torus,
+    PathShape, Profile, Reduction, Sampling, Segment, Sphere, Torus,
 };
 use energywave::{ErrorKind, Scene};
 use fastrand::Rng;
@@ -169,6 +169,7 @@ fn rich_scenes() -> Vec<Scene> {
         scene.integration = Integration {
             method,
             measure: [Measure::Parameter, Measure::Length][index % 2],
+            reduction: Reduction::Sum, // of as many sources
             softening: [0.0, number(random)][index / 2 % 2],
         };
         scene.display.exposure = number(random).min(99.0);

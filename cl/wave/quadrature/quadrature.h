@@ -3,6 +3,7 @@
 #include "../../random.h"
 #include "../types.h"
 #include "decay.h"
+#include "reduction.h"
 
 typedef struct {
     __global const Node *nodes; // of a sum: Simpson's rule, or with -D JITTERED strata

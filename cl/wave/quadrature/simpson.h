@@ -29,7 +29,7 @@ INLINE floatv KIND_simpson(const Ray *const ray, const Sources *const sources, c
 #else
             const floatv s = splat(nodes[k].s), weight = splat(nodes[k].weight);
 #endif
-            block = fma(weight, KIND_field(&path, s), block);
+            block = fma(weight, summand_of(KIND_field(&path, s)), block);
         }
         integral += block;
     }

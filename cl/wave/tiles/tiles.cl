@@ -99,8 +99,8 @@ INLINE bool settle_sources(const TileTask *const task, const Tile *const tile, _
     for (uint begin = launch->begin[number]; begin < launch->end[number]; begin += 32u, ++word) {                      \
         for (uint left = memory->open[word]; left != 0; left &= left - 1u) {                                           \
             const uint i = begin + lowest_bit(left);                                                                   \
-            const floatv integral = kind##_integral(ray, task->sources, i, task->quadrature);                          \
-            radiance = fma3(uniform3(kind##_emission(task->sources, i)), integral, radiance);                          \
+            const floatv light = reduced(kind##_integral(ray, task->sources, i, task->quadrature));                    \
+            radiance = fma3(uniform3(kind##_emission(task->sources, i)), light, radiance);                             \
             *integrals += LANES;                                                                                       \
         }                                                                                                              \
     }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::integration::{check_divisions, check_strata, check_tolerance};
 use crate::scene::values::{Checked, Fault};
-use crate::scene::{Integration, Measure, Method, Sampling};
+use crate::scene::{Integration, Measure, Method, Reduction, Sampling};
 
 /// `[integration]`: keys of all methods may stand there, whichever is chosen.
 #[derive(Deserialize, Serialize)]
@@ -20,6 +20,8 @@ pub(super) struct IntegrationTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     sampling: Option<Sampling>,
     measure: Measure,
+    #[serde(skip_serializing_if = "Reduction::is_sum")]
+    reduction: Reduction,
     softening: f64,
 }
 
@@ -34,7 +36,10 @@ enum MethodName {
 impl Default for IntegrationTable {
     fn default() -> Self {
         let Integration {
-            measure, softening, ..
+            measure,
+            reduction,
+            softening,
+            ..
         } = Integration::default();
         Self {
             method: MethodName::Exact,
@@ -43,6 +48,7 @@ impl Default for IntegrationTable {
             tolerance: None,
             sampling: None,
             measure,
+            reduction,
             softening,
         }
     }
@@ -89,6 +95,7 @@ impl IntegrationTable {
                 },
             },
             measure: self.measure,
+            reduction: self.reduction,
             softening: self.softening,
         }
     }
@@ -96,6 +103,7 @@ impl IntegrationTable {
     pub(super) fn of(integration: &Integration) -> Self {
         let keep = Self {
             measure: integration.measure,
+            reduction: integration.reduction,
             softening: integration.softening,
             ..Self::default()
         };

@@ -340,6 +340,11 @@ impl SourceKind for LightPath {
         }
     }
 
+    fn uneven(&self) -> Option<&'static str> {
+        let intensity = self.intensity.is_some().then_some("intensity");
+        intensity.or(self.colors.is_some().then_some("colors"))
+    }
+
     fn with_series(self) -> Self {
         Self {
             intensity: Some(vec![0.6, 1.0, 0.3, 0.8]),

@@ -179,6 +179,7 @@ mod tests {
             measure: 1.0,
             pixel: 1e-3,
             tolerance: 1e-2,
+            reduction: crate::scene::Reduction::Sum,
         };
         let mut rows = Rows::default();
         rows.list.push([7.0; 4]);
