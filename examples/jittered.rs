@@ -1,5 +1,5 @@
-//! What stratified stochastic sampling (Cook 1986) gains where the paper of 2015, section 5.4, asks for it: the torus of
-//! its figure 14 by Simpson's rule, and by as many jittered samples, beside the integral itself. Prints the relative
+//! What stratified stochastic sampling (Cook 1986) gains where the paper of 2015, section 5.4, asks for it: the torus
+//! of its figure 14 by Simpson's rule, and by as many jittered samples, beside the integral itself. Prints the relative
 //! errors of the pixels, a root of mean squares, and of their means over 5x5 pixels, which is what an eye sees from
 //! farther off; writes `figure-14-jittered.png` into the folder given.
 //!

@@ -47,12 +47,12 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[integration]\nreduction = \"rms\"\n[[sphere]]\n[[torus]]\nmajor_radius = 1\n",
         "5:13: integration.reduction",
-        "the scene has 2 sources: leave one, or write \"sum\"",
+        "there are 2 sources: leave one, or write \"sum\"",
     ),
     (
         "[integration]\nreduction = \"rms\"\n[[group]]\nrepeat = { count = 3, step = [1, 0, 0] }\n[[group.sphere]]\n",
         "5:13: integration.reduction",
-        "the scene has 3 sources",
+        "there are 3 sources",
     ),
     (
         "[integration]\nreduction = \"rms\"\n[[sphere]]\nlayers = [{ radius = 0.1 }, { radius = 0.2 }]\n",
@@ -92,6 +92,11 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[integration]\nreduction = \"rms\"\n[[sphere]]\nradius = 0.1\npeak = 2\n",
         "8:8: sphere[0].peak",
+        "give a coefficient",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[sphere]]\nradius = 0.1\nlayers = [{ peak = 2 }]\n",
+        "8:20: sphere[0].layers[0].peak",
         "give a coefficient",
     ),
     (

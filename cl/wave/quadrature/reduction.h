@@ -1,6 +1,6 @@
-// What is summed of a field along a ray, and what a pixel has of the integral: both themselves, or with -D ROOT the root
-// of an integral of squares. Where the square is a field that has a closed form, such as 1/q^2 for 1/q, the host gives
-// that field; elsewhere (-D SQUARED) every sample is squared.
+// What is summed of a field along a ray, and what a pixel has of the integral: both themselves, or with -D ROOT the
+// root of an integral of squares. Where the square is a field that has a closed form, such as 1/q^2 for 1/q, the host
+// gives that field; elsewhere (-D SQUARED) every sample is squared.
 #pragma once
 #include "../../roots.h"
 

@@ -48,8 +48,8 @@ impl Anchor {
         fine(point - self.origin)
     }
 
-    /// Returns a light as it is packed: where a root is taken, all that stays outside it is the colour, and a field whose
-    /// square has a closed form is that square.
+    /// Returns a light as it is packed: where a root is taken, its coefficient stays outside in the colour, and a field
+    /// whose square has a closed form is that square.
     fn reduced(&self, light: Light) -> Light {
         let mut falloff = light.falloff;
         if self.reduction == Reduction::Sum {
