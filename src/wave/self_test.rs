@@ -181,8 +181,7 @@ fn known_scenes(task: Task) -> Result<[Scene; 2]> {
     Ok([near, far])
 }
 
-/// Returns how a task integrates. The tolerance is the strictest that a task's kernels serve (see [`super::Rule`]), or
-/// one that float32 meets.
+/// Returns how a task integrates, to a tolerance that its kernels, and no others, serve (see [`super::Rule`]).
 fn integration(task: Task, softening: f64) -> Integration {
     let sampling = match task.rays {
         Rays::Tiles => Sampling::Tiles,
@@ -194,8 +193,8 @@ fn integration(task: Task, softening: f64) -> Integration {
             divisions: 64,
             seed: 3,
         },
-        Variant::Exact { nodes, .. } => Method::Exact {
-            tolerance: if nodes <= 4 { 0.1 } else { 1e-3 },
+        Variant::Exact { coarse, .. } => Method::Exact {
+            tolerance: if coarse { 1e-3 } else { 1e-4 },
             sampling,
         },
     };
