@@ -195,6 +195,17 @@ fn pixels_with_depths_and_fading_meet_every_tolerance() {
 }
 
 #[test]
+fn every_lane_width_takes_roots() {
+    let mut scene = shaped(SPHERE(), SQUARED[3]);
+    scene.integration.method = common::by(Sampling::Pixels);
+    let expected = reference::render(&scene).unwrap();
+    for lanes in common::lane_widths() {
+        let found = off(&mut renderer(lanes, ""), &scene, &expected);
+        assert!(meets(&found, 1e-3), "{lanes} lanes: {found:?}");
+    }
+}
+
+#[test]
 fn spoiled_kernels_and_the_sum_miss() {
     let scene = shaped(SEGMENT(), SQUARED[2]);
     let expected = reference::render(&scene).unwrap();
