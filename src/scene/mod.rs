@@ -21,6 +21,7 @@ mod list;
 #[cfg(feature = "files")]
 mod preset;
 mod ray;
+mod reduction;
 mod source;
 mod stamp;
 mod validate;
@@ -36,7 +37,9 @@ pub use depth_report::DepthReport;
 #[cfg(feature = "files")]
 pub use file::MethodKeys;
 pub use group::{Group, Repeat, Rotation};
-pub use integration::{Absorption, CORE_FLOOR, Decay, Integration, Measure, Method, Sampling};
+pub use integration::{
+    Absorption, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
+};
 pub use list::List;
 #[cfg(feature = "files")]
 pub use preset::Preset;

@@ -12,6 +12,7 @@ const FILES: &[SourceFile<'static>] = embed!(
     "wave/quadrature/decay.h",
     "wave/quadrature/panel.h",
     "wave/quadrature/quadrature.h",
+    "wave/quadrature/reduction.h",
     "wave/quadrature/shape.h",
     "wave/quadrature/simpson.h",
     "wave/quadrature/stretch.h",

@@ -1,5 +1,5 @@
-//! Cores along which light changes, against the definition: the nearest of many points of the core, each with a share of
-//! its length, at which series are looked up; integrated in float64.
+//! Cores along which light changes, against the definition: the nearest of many points of the core, each with a share
+//! of its length, at which series are looked up; integrated in float64.
 
 use energywave::internals::{Integrand, Source, exact, integrate, sources};
 use energywave::scene::{

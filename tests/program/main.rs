@@ -16,6 +16,7 @@ mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
 mod groups; // has groups placed as the sources that they stand for
 mod messages; // is told what to write instead, and nothing raw or long
+mod methods; // chooses ways to integrate, in files and by options
 #[cfg(unix)] // as cli
 mod outputs; // writes to links, pipes and devices, and reads scenes from pipes
 #[cfg(unix)] // as cli

@@ -7,7 +7,7 @@ use energywave::image::{DepthAlong, DepthImage, ImageSize, ToneMap};
 use energywave::internals::KINDS;
 use energywave::scene::{
     Beam, BeamEnd, Camera, Curve, Cylinder, Dashes, Decay, Integration, Layer, LightPath, Measure,
-    Method, PathShape, Profile, Sampling, Segment, Sphere, Torus,
+    Method, PathShape, Profile, Reduction, Sampling, Segment, Sphere, Torus,
 };
 use energywave::{ErrorKind, Scene};
 use fastrand::Rng;
@@ -156,12 +156,15 @@ fn rich_scenes() -> Vec<Scene> {
         tolerance: 1.0 / 3000.0,
         sampling,
     };
+    let jittered = |divisions, seed| Method::Jittered { divisions, seed };
     let methods = [
         Method::simpson(2),
         Method::simpson(65536),
         exact(Sampling::Tiles),
         exact(Sampling::Pixels),
         Method::default(),
+        jittered(1, 0),
+        jittered(65535, u32::MAX),
     ];
     let mut scenes = Vec::new();
     for (index, method) in methods.into_iter().cycle().take(60).enumerate() {
@@ -179,6 +182,7 @@ fn rich_scenes() -> Vec<Scene> {
         scene.integration = Integration {
             method,
             measure: [Measure::Parameter, Measure::Length][index % 2],
+            reduction: Reduction::Sum, // of as many sources
             softening: [0.0, number(random)][index / 2 % 2],
         };
         scene.display.exposure = number(random).min(99.0);

@@ -25,7 +25,7 @@ typedef struct {
 #define IS_SQUARE(profile) 0u
 #endif
 
-#ifdef FADING // has no closed forms
+#if defined(FADING) || defined(SQUARED) // have no closed forms
 #define IS_SHAPED(profile) 1
 #define HAS_END(profile) ((profile)->end2 < ENDLESS)
 #elif defined(SHAPES)

@@ -63,6 +63,17 @@ impl Along<'_> {
             && self.tapers == [0.0; 2]
     }
 
+    /// Returns the key by which its light is not the same all along the core, if there is one.
+    pub(crate) fn uneven(&self) -> Option<&'static str> {
+        let keys = [
+            (self.intensity.is_some(), "intensity"),
+            (self.colors.is_some(), "colors"),
+            (self.tapers != [0.0; 2], "taper_lengths"),
+        ];
+        keys.into_iter()
+            .find_map(|(is_named, key)| is_named.then_some(key))
+    }
+
     /// Checks it; `given_radius` is the source's own.
     pub(crate) fn check(&self, shared: &Shared<'_>, given_radius: f64) -> Checked {
         check_each("intensity", self.intensity, |value| {

@@ -92,12 +92,19 @@ impl Falloff {
                 Profile::Gaussian => (2.0 * PI).sqrt() * radius,
             };
         };
-        // Simpson's rule over u, d = radius sinh u: what is steep at the core is even in u.
-        let step = (reach / radius).asinh() / f64::from(ACROSS);
+        self.sum_across(reach, |field| field)
+    }
+
+    /// Integrates what is summed of the field of coefficient 1 straight across a core with a radius, on both sides as
+    /// far as `end`, by length: Simpson's rule over u, d = radius sinh u, as what is steep at the core is even in u.
+    pub(crate) fn sum_across(&self, end: f64, summand: impl Fn(f64) -> f64) -> f64 {
+        let radius = self.radius;
+        let step = (end / radius).asinh() / f64::from(ACROSS);
         let light = |k: u32| {
             let u = f64::from(k) * step;
             let distance2 = (radius * u.sinh()).powi(2);
-            self.field(distance2, distance2 + radius * radius) * radius * u.cosh()
+            let field = self.field(distance2, distance2 + radius * radius);
+            summand(field) * radius * u.cosh()
         };
         let pairs =
             (0..ACROSS / 2).map(|k| light(2 * k) + 4.0 * light(2 * k + 1) + light(2 * k + 2));

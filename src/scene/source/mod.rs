@@ -4,11 +4,11 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
-use super::Measure;
 use super::chain::{LightAlong, LitChain};
 use super::group::Placement;
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
+use super::{Measure, Reduction};
 
 mod core;
 mod falloff;
@@ -80,6 +80,21 @@ pub(crate) trait SourceKind: HasLight {
     /// Makes a source of this kind at about `place`, for the self-test of kernels.
     fn specimen(place: DVec3, profile: Profile) -> Self;
 
+    /// Returns the key with which it has more than one light, or one that is not the same all along its core; layers
+    /// aside.
+    fn uneven(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Makes a specimen even ([`SourceKind::uneven`]), where it is not.
+    #[must_use]
+    fn evened(self) -> Self
+    where
+        Self: Sized,
+    {
+        self
+    }
+
     /// Gives a specimen a series over its core, where its kind has such.
     #[must_use]
     fn with_series(self) -> Self
@@ -105,10 +120,12 @@ pub(crate) struct Brightness {
     /// World units.
     pub least_distance: f64,
     pub measure: Measure,
+    pub reduction: Reduction,
 }
 
 impl Brightness {
-    /// Returns the greatest value that decay times field times measure can take.
+    /// Returns the greatest value that decay times field times measure can take, of squared fields where those are
+    /// integrated.
     pub(crate) fn of(&self, falloff: Falloff) -> f64 {
         let distance = self.least_distance.hypot(falloff.radius);
         let field = match falloff.profile {
@@ -119,7 +136,7 @@ impl Brightness {
             Profile::Smeared => 1.0 / falloff.radius,
             Profile::Convolution => MOST_ADDED_UP,
         };
-        self.most * field
+        self.most * self.reduction.summand(field)
     }
 
     /// Checks the light that the keys of a source, or of one of its layers, make; `strongest` gives the greatest
@@ -148,9 +165,14 @@ impl Brightness {
                 } else {
                     "coefficient"
                 },
-                format!(
-                    "next to the core the light comes to {brightest:.0e}, more than float32 holds"
-                ),
+                match self.reduction {
+                    Reduction::Sum => format!(
+                        "next to the core the light comes to {brightest:.0e}, more than float32 holds"
+                    ),
+                    Reduction::Rms => format!(
+                        "next to the core its square comes to {brightest:.0e}, more than float32 holds: give a radius"
+                    ),
+                },
             ));
         }
         Ok(())

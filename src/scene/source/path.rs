@@ -168,6 +168,10 @@ impl SourceKind for LightPath {
         emissions_along(&self.along_keys().lights(&self.shared()), add);
     }
 
+    fn uneven(&self) -> Option<&'static str> {
+        self.along_keys().uneven()
+    }
+
     fn with_series(self) -> Self {
         Self {
             intensity: Some(vec![0.6, 1.0, 0.3, 0.8]),

@@ -87,6 +87,10 @@ impl SourceKind for Segment {
         Core::between(self.from, self.to)
     }
 
+    fn uneven(&self) -> Option<&'static str> {
+        self.along().uneven()
+    }
+
     fn as_chain(&self) -> Option<LitChain> {
         let along = self.along();
         (!along.is_even()).then(|| along.lit(self.whole(), None, &self.shared()))

@@ -137,6 +137,10 @@ impl SourceKind for Torus {
         }
     }
 
+    fn uneven(&self) -> Option<&'static str> {
+        self.along_keys().uneven()
+    }
+
     fn as_chain(&self) -> Option<LitChain> {
         (!self.is_even()).then(|| self.along_keys().lit(self.whole(), None, &self.shared()))
     }

@@ -13,7 +13,7 @@ pub use view::{integrand, ray, view};
 use crate::opencl::device_struct;
 use crate::scene::kinds::{KIND_COUNT, for_each_kind};
 use crate::scene::{
-    self, Falloff, HasLight, Light, Measure, Profile, Scene, SourceKind, SourcesStamp,
+    self, Falloff, HasLight, Light, Profile, Reduction, Scene, SourceKind, SourcesStamp,
 };
 
 /// Where the float32 coordinates begin, how far the rays go from there, and what every emission is multiplied with.
@@ -29,21 +29,20 @@ pub struct Anchor {
     pub pixel: f64,
     /// Relative error aimed at.
     pub tolerance: f64,
+    /// What a pixel has of integrals.
+    pub reduction: Reduction,
 }
 
 impl Anchor {
     /// Makes the anchor at `origin`, for rays that stay within `reach` of it and are `ray_length` long.
     pub fn new(scene: &Scene, origin: DVec3, reach: f64, ray_length: f64) -> Self {
-        let measure = match scene.integration.measure {
-            Measure::Length => ray_length,
-            _ => 1.0,
-        };
         Self {
             origin,
             reach,
-            measure: measure * even_decay(scene),
+            measure: scene.integration.scale(ray_length) * even_decay(scene),
             pixel: pixel(scene),
             tolerance: scene.integration.method.tolerance(),
+            reduction: scene.integration.reduction,
         }
     }
 
@@ -51,15 +50,33 @@ impl Anchor {
         fine(point - self.origin)
     }
 
+    /// Returns a light as it is packed: where a root is taken, its coefficient stays outside in the colour, and a field
+    /// whose square has a closed form is that square.
+    fn reduced(&self, light: Light) -> Light {
+        let mut falloff = light.falloff;
+        if self.reduction == Reduction::Sum {
+            return light;
+        }
+        if has_closed_square(falloff) {
+            falloff.profile = Profile::InverseSquare;
+        }
+        Light {
+            coefficient: 1.0,
+            color: light.emission(),
+            falloff,
+        }
+    }
+
     fn emission(&self, coefficient: f64, color: DVec3) -> [f32; 4] {
         vector(color * (coefficient * self.measure))
     }
 }
 
-/// Returns the decay of a scene where it is the same everywhere, else 1.
+/// Returns what a light has of the decay where that is the same everywhere, else 1.
 pub fn even_decay(scene: &Scene) -> f64 {
     let even = scene.decay.filter(|decay| decay.power == 0);
-    even.map_or(1.0, |decay| decay.alpha)
+    let decay = even.map_or(1.0, |decay| decay.alpha);
+    scene.integration.reduction.of(decay)
 }
 
 /// Returns how large a pixel is, as a share of the distance from the eye.
@@ -96,7 +113,8 @@ trait PackInto<Device> {
 
 impl<Source: Pack + HasLight> PackInto<Source::Device> for Source {
     fn pack_into(&self, list: &mut Vec<Source::Device>, anchor: &Anchor, rows: &mut Rows) {
-        list.extend(self.lights().map(|light| self.pack(&light, anchor, rows)));
+        let lights = self.lights().map(|light| anchor.reduced(light));
+        list.extend(lights.map(|light| self.pack(&light, anchor, rows)));
     }
 }
 
@@ -189,6 +207,13 @@ pub struct SourceFacts {
     pub has_sharp_peaks: bool,
     /// Whether some may cancel others.
     pub has_both_signs: bool,
+    /// Whether the square of every field has a closed form.
+    pub has_closed_squares: bool,
+}
+
+/// Returns whether the square of a field has a closed form.
+fn has_closed_square(falloff: Falloff) -> bool {
+    falloff.profile == Profile::Inverse && falloff.reach.is_none()
 }
 
 impl SourceFacts {
@@ -203,6 +228,7 @@ impl SourceFacts {
                 has_convolutions: scene.any_falloff(|it| it.profile == Profile::Convolution),
                 has_sharp_peaks: scene.any_falloff(|it| it.is_sharp()),
                 has_both_signs: scene.has_light_of_both_signs(),
+                has_closed_squares: !scene.any_falloff(|it| !has_closed_square(it)),
             };
         }
     }

@@ -97,13 +97,14 @@ fn pack_levels(
         let from = level.off / of_distance;
         rows.list[row + 2 * k + 1] = [(from * from) as f32, level.off as f32, 0.0, 0.0];
     }
+    let light = anchor.reduced(along.light);
     LightPath {
-        emission: anchor.emission(along.light.coefficient, along.light.color),
+        emission: anchor.emission(light.coefficient, light.color),
         row: row as u32,
         level_count: levels.len() as u32,
         is_even: u32::from(is_even),
         most_bend: (OF_LIGHT * anchor.tolerance) as f32,
-        falloff: falloff(along.light.falloff),
+        falloff: falloff(light.falloff),
     }
 }
 
@@ -260,6 +261,7 @@ mod tests {
             measure: 1.0,
             pixel: 1e-3,
             tolerance: 1e-2,
+            reduction: crate::scene::Reduction::Sum,
         };
         let mut rows = Rows::default();
         rows.list.push([7.0; 4]);
