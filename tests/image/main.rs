@@ -7,7 +7,8 @@ mod common;
 mod along;
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
-mod convolution; // holds light that adds up over a core to its definition
+mod convolution;
+mod convolved_paths; // holds light that adds up over a core to its definition
 mod defaults; // looks at a scene that names nothing
 mod depth; // compares occluded images with those of rays that are cut by hand
 mod exact; // holds the method `exact` to every tolerance

@@ -5,7 +5,8 @@
 mod common;
 
 mod bad_looks; // has every fault of layers named with its place
-mod bad_scenes; // has every fault of a scene file named with its place
+mod bad_scenes;
+mod bad_series; // has every fault of a scene file named with its place
 mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
 #[cfg(unix)] // shells, signals and the loader's environment variables
 mod cli; // runs the program: exit codes, messages and outputs

@@ -6,6 +6,9 @@
 #include "../quadrature/quadrature.h"
 #include "../quadrature/stretch.h"
 #include "../tiles/clearance.h"
+#ifdef CONVOLUTION
+#include "convolution.h"
+#endif
 #include "profile.h"
 #include "quadratic.h"
 #include "sources.h"
@@ -64,7 +67,45 @@ INLINE path_rows path_level_for(const path_path *const path) {
     return rows;
 }
 
+#ifdef CONVOLUTION
+#define PATH_IS_CONVOLVED(path) ((path)->source->falloff.profile == 5u)
+
+// Returns a piece whose points are added up; one that has no length adds nothing.
+INLINE ConvolvedPiece path_piece(const path_path *const path, const path_rows *const rows, const uint k) {
+    __global const float4 *const corner = rows->corners + 4u * k, *const next = corner + 4;
+    const fine3v direction = fine3(corner[2], corner[3]);
+    // What is added up is softened, and has no other floor.
+    const floatv softening2 = path->profile.softening2 + path->profile.floor2;
+    ConvolvedPiece piece;
+    piece.to_line = distance2_to_line(path->ray, corner[0], corner[1], corner[2], corner[3], softening2);
+    piece.to_first = distance2_to_point(path->ray, corner[0], corner[1], softening2);
+    piece.to_last = distance2_to_point(path->ray, next[0], next[1], softening2);
+    piece.over_first = height_over(path->ray, corner[0], corner[1], direction);
+    piece.over_last = height_over(path->ray, next[0], next[1], direction);
+    piece.over_first.at *= 2.0f, piece.over_first.slope *= 2.0f;
+    piece.over_last.at *= 2.0f, piece.over_last.slope *= 2.0f;
+    piece.length = 2.0f * corner[0].w;
+    piece.light = 0.5f * (corner[1].w + next[1].w);
+    piece.growth = (next[1].w - corner[1].w) / piece.length;
+    return piece;
+}
+
+#define FOR_EACH_PIECE(k, rows)                                                                                        \
+    for (uint k = 0; k + 1u < (rows)->corner_count; ++k)                                                               \
+        if ((rows)->corners[4u * k].w > 0.0f)
+#endif
+
 floatv path_field(const path_path *const path, const floatv s) {
+#ifdef CONVOLUTION
+    if (PATH_IS_CONVOLVED(path)) {
+        floatv field = splat(0.0f);
+        FOR_EACH_PIECE(k, &path->rows) {
+            const ConvolvedPiece piece = path_piece(path, &path->rows, k);
+            field += convolved_at(&piece, s);
+        }
+        return field;
+    }
+#endif
     const path_spot spot = path_spot_at(path->ray, s);
     const path_groups groups = path_all_groups(&path->rows);
     const path_place nearest = path_nearest(&path->rows, &groups, &spot);
@@ -96,6 +137,16 @@ PER_RAY_IF_WIDE floatv path_integral(const Ray *const ray, const Sources *const 
                                      const Quadrature *const quadrature) {
     const path_path path = path_along(ray, sources, index);
     const path_rows level = path_level_for(&path), *const rows = &level;
+#if defined(CONVOLUTION) && defined(EXACT)
+    if (PATH_IS_CONVOLVED(&path)) {
+        floatv sum = splat(0.0f);
+        FOR_EACH_PIECE(k, rows) {
+            const ConvolvedPiece piece = path_piece(&path, rows, k);
+            sum += convolved_over(&piece, ray->end, quadrature);
+        }
+        return sum;
+    }
+#endif
     floatv s = splat(0.0f), end = ray->end;
     path_groups groups = path_all_groups(rows);
 #ifdef SHAPES

@@ -5,6 +5,8 @@ use glam::DVec3;
 use crate::scene::kinds::for_each_kind;
 use crate::scene::{Falloff, HasLight, Light, Ray, Scene, SourceKind};
 
+mod added;
+
 macro_rules! field_modules {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         $(mod $kind;)*

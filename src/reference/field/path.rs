@@ -4,14 +4,15 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::added::Added;
 use super::{Field, Parts, Sample, Source, crossing};
 use crate::scene::chain::{LightAlong, LitChain, Piece, Run, series_at};
-use crate::scene::{Falloff, LightPath, Ray};
+use crate::scene::{Falloff, LightPath, Profile, Ray};
 
 /// A piece of a core.
 #[derive(Debug, Clone)]
-struct Part {
-    piece: Piece,
+pub struct Part {
+    pub(super) piece: Piece,
     /// A ball in which it lies.
     center: DVec3,
     ball: f64,
@@ -23,8 +24,8 @@ struct Part {
 
 /// The pieces of all runs, and what light and thickness are along them.
 #[derive(Debug, Clone)]
-struct Nearest {
-    parts: Arc<[Part]>,
+pub struct Nearest {
+    pub(super) parts: Arc<[Part]>,
     runs: Arc<[Run]>,
     values: Vec<(f64, f64)>,
     radii: Vec<(f64, f64)>,
@@ -44,7 +45,10 @@ pub fn add_chain(lit: &LitChain, add: &mut dyn FnMut(Source)) {
             values: values.clone(),
             radii: radii.clone(),
         };
-        add(Source::new(field, *light));
+        add(match light.falloff.profile {
+            Profile::Convolution => Source::new(Added(field), *light),
+            _ => Source::new(field, *light),
+        });
     }
 }
 
@@ -94,12 +98,12 @@ impl Nearest {
     }
 
     /// Returns what light is multiplied with at a point of a piece, and how thick the core is there.
-    fn lit(&self, index: usize, t: f64) -> (f64, f64) {
-        let part = &self.parts[index];
-        let run = &self.runs[part.run];
-        if self.values.is_empty() && self.radii.is_empty() && run.fade == [1.0; 2] {
+    pub(super) fn lit(&self, index: usize, t: f64) -> (f64, f64) {
+        if self.is_even(index) {
             return (1.0, 0.0);
         }
+        let part = &self.parts[index];
+        let run = &self.runs[part.run];
         let [begin, end] = part.shares;
         let of_piece = part.piece.length(t) / part.length;
         let own = begin + (end - begin) * of_piece;
@@ -107,6 +111,48 @@ impl Nearest {
         let own = if own.is_nan() { 0.0 } else { own };
         let value = series_at(&self.values, run.share(own), 1.0);
         (run.fade(own) * value, series_at(&self.radii, run.share(own), 0.0))
+    }
+}
+
+impl Nearest {
+    /// Returns whether light and thickness are the same all along a piece.
+    pub(super) fn is_even(&self, index: usize) -> bool {
+        let run = &self.runs[self.parts[index].run];
+        self.values.is_empty() && self.radii.is_empty() && run.fade == [1.0; 2]
+    }
+
+    /// Returns where on a piece, as t, knots of its light lie, in the order of the knots.
+    pub(super) fn knots(&self, index: usize) -> Vec<f64> {
+        let part = &self.parts[index];
+        let run = &self.runs[part.run];
+        let [begin, end] = part.shares.map(|own| run.share(own));
+        let of_piece = |(share, _): &(f64, f64)| (share - begin) / (end - begin);
+        let inside = self.values.iter().map(of_piece).filter(|share| *share > 0.0 && *share < 1.0);
+        inside.map(|share| part.piece.t_at_length(share * part.length)).collect()
+    }
+
+    pub(super) fn for_each_stationary(&self, index: usize, point: DVec3, offer: &mut impl FnMut(f64)) {
+        for_each_stationary(&self.parts[index].piece, |v| v, point, offer);
+    }
+
+    /// Calls `add` with each parameter at which the ray passes a piece, or a plane through an end of one, and the point
+    /// of the piece.
+    pub(super) fn passes(&self, ray: &Ray, add: &mut dyn FnMut(f64, DVec3)) {
+        let direction = ray.span.normalize();
+        let flat = |v: DVec3| v - direction * v.dot(direction);
+        let mut offer = |s: f64, point: DVec3| {
+            if s.is_finite() {
+                add(s, point);
+            }
+        };
+        for Part { piece, .. } in self.parts.iter() {
+            for_each_stationary(piece, flat, ray.origin, &mut |t| {
+                offer(ray.nearest_to(piece.at(t)), piece.at(t));
+            });
+            for t in [0.0, 1.0] {
+                offer(crossing(ray, piece.at(t), piece.velocity(t)), piece.at(t));
+            }
+        }
     }
 }
 
@@ -128,24 +174,12 @@ impl Field for Nearest {
 
     /// Adds where the ray passes a piece that is nearest there, and where it leaves the planes through the ends of one.
     fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>) {
-        let direction = ray.span.normalize();
-        let flat = |v: DVec3| v - direction * v.dot(direction);
-        let mut found = Vec::new();
-        for Part { piece, .. } in self.parts.iter() {
-            for_each_stationary(piece, flat, ray.origin, &mut |t| {
-                found.push((ray.nearest_to(piece.at(t)), piece.at(t)));
-            });
-            let [_, c1, c2, c3] = piece.0;
-            for (end, tangent) in [(0.0, c1), (1.0, c1 + 2.0 * c2 + 3.0 * c3)] {
-                found.push((crossing(ray, piece.at(end), tangent), piece.at(end)));
-            }
-        }
-        let is_nearest = |(s, point): &(f64, DVec3)| {
+        self.passes(ray, &mut |s, point| {
             let at = ray.at(s.clamp(0.0, 1.0));
-            s.is_finite() && point.distance_squared(at) <= self.distance2(at) * (1.0 + 1e-6) + 1e-24
-        };
-        found.retain(is_nearest);
-        breaks.extend(found.iter().map(|(s, _)| s));
+            if point.distance_squared(at) <= self.distance2(at) * (1.0 + 1e-6) + 1e-24 {
+                breaks.push(s);
+            }
+        });
     }
 }
 

@@ -59,12 +59,12 @@ impl Piece {
     }
 
     /// Returns how it moves on with t.
-    pub(super) fn velocity(&self, t: f64) -> DVec3 {
+    pub(crate) fn velocity(&self, t: f64) -> DVec3 {
         let [_, c1, c2, c3] = self.0;
         c1 + (2.0 * c2 + 3.0 * c3 * t) * t
     }
 
-    fn is_straight(&self) -> bool {
+    pub(crate) fn is_straight(&self) -> bool {
         let [_, _, c2, c3] = self.0;
         (c2, c3) == (DVec3::ZERO, DVec3::ZERO)
     }
@@ -81,7 +81,7 @@ impl Piece {
     }
 
     /// Returns the t up to which it is so long.
-    pub(super) fn t_at_length(&self, length: f64) -> f64 {
+    pub(crate) fn t_at_length(&self, length: f64) -> f64 {
         let (mut from, mut to) = (0.0, 1.0);
         let mut t = length / self.length(1.0);
         for _ in 0..60 {

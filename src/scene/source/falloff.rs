@@ -24,7 +24,7 @@ pub enum Profile {
     /// `erf(d / (sqrt(2) radius)) / d`: `1/d` smeared by a Gaussian of that standard deviation.
     Smeared,
     /// The sum of `1/d` over all points of the core, per unit of its length: light that adds up, without a joint where
-    /// cores meet. For a [`Segment`](super::Segment) alone.
+    /// cores meet. For a [`Segment`](super::Segment), a [`LightPath`](super::LightPath) and a [`Torus`](super::Torus).
     Convolution,
 }
 

@@ -146,7 +146,7 @@ impl Brightness {
         let falloff = shared.falloff();
         if falloff.profile == Profile::Convolution {
             if !shared.adds_up {
-                let message = "adds up the light of a [[segment]]; other cores have none";
+                let message = "adds up the light of a [[segment]], [[path]] or [[torus]]; other cores have none";
                 return Err(Fault::new("profile", message));
             }
             falloff.check_convolution(shared.peak)?;

@@ -140,10 +140,9 @@ impl LightPath {
 impl SourceKind for LightPath {
     fn check(&self, brightness: &Brightness) -> Checked {
         self.check_points()?;
-        let along = self.along_keys();
-        along.check(&self.shared(), self.radius)?;
-        self.shared()
-            .check(brightness, &|light| along.strongest() * light.coefficient.abs())
+        let (along, shared) = (self.along_keys(), self.shared().adding_up());
+        along.check(&shared, self.radius)?;
+        shared.check(brightness, &|light| along.strongest() * light.coefficient.abs())
     }
 
     fn move_core(&mut self, place: &Placement) {

@@ -253,6 +253,12 @@ impl<'a> Shared<'a> {
         self.peak.is_some() || self.layers.iter().any(|layer| layer.peak.is_some())
     }
 
+    /// Returns whether some light is that of all points of the core, added up.
+    pub(crate) fn adds_any_up(self) -> bool {
+        self.lights()
+            .any(|light| light.falloff.profile == Profile::Convolution)
+    }
+
     /// Returns how many lights they make.
     pub(crate) fn light_count(&self) -> usize {
         self.layers.len().max(1)

@@ -105,10 +105,9 @@ impl SourceKind for Torus {
         direction("axis", self.axis)?;
         positive("major_radius", self.major_radius)?;
         self.check_angles()?;
-        let along = self.along_keys();
-        along.check(&self.shared(), self.radius)?;
-        self.shared()
-            .check(brightness, &|light| along.strongest() * light.coefficient.abs())
+        let (along, shared) = (self.along_keys(), self.shared().adding_up());
+        along.check(&shared, self.radius)?;
+        shared.check(brightness, &|light| along.strongest() * light.coefficient.abs())
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
@@ -142,7 +141,8 @@ impl SourceKind for Torus {
     }
 
     fn as_chain(&self) -> Option<LitChain> {
-        (!self.is_even()).then(|| self.along_keys().lit(self.whole(), None, &self.shared()))
+        let is_ring = self.is_even() && !self.shared().adds_any_up();
+        (!is_ring).then(|| self.along_keys().lit(self.whole(), None, &self.shared()))
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {
