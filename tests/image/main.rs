@@ -5,6 +5,7 @@
 mod common;
 
 mod along;
+mod along_cases;
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
 mod convolution;

@@ -86,6 +86,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 reach: None,
                 peak: None,
                 layers: layers(random),
+                ..Beam::new(DVec3::X)
             });
         }
         scene.segments.push(Segment {
@@ -143,8 +144,20 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 reach: Some(1200.0 + number(random)),
                 peak: None,
                 layers: layers(random),
+                ..Curve::new([DVec3::ZERO; 3])
             });
         }
+        scene.beams.push(Beam {
+            series_length: Some(number(random)),
+            radii: Some(vec![0.0, number(random)]),
+            colors: Some(vec![vector(random); 3]),
+            ..Beam::new(vector(random))
+        });
+        scene.curves.push(Curve {
+            radii: Some(vec![0.0, number(random)]),
+            dashes: Some(Dashes::new(7)),
+            ..Curve::new([0; 3].map(|_| vector(random)))
+        });
     }
 }
 
