@@ -8,6 +8,7 @@ use crate::scene::kinds::{KIND_COUNT, for_each_kind};
 const FILES: &[SourceFile<'static>] = embed!(
     "wave/quadrature/adaptive.h",
     "wave/quadrature/closed_form.h",
+    "wave/quadrature/closed_form_shape.h",
     "wave/quadrature/closed_form_square.h",
     "wave/quadrature/decay.h",
     "wave/quadrature/panel.h",
