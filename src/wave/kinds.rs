@@ -31,6 +31,7 @@ const FILES: &[SourceFile<'static>] = embed!(
     "wave/source/quadratic.h",
     "wave/source/sources.h",
     "wave/source/spline.h",
+    "wave/tiles/ball.h",
     "wave/tiles/clearance.h",
     "wave/tiles/hiding.h",
     "wave/tiles/settle.h",

@@ -199,6 +199,7 @@ impl Wave {
             has_convolutions: self.packed.facts(scene).has_convolutions,
             fading: scene.fading().map(|fading| fading.power),
             has_series: self.packed.sources.rows.has_series,
+            has_ends: self.packed.sources.rows.first_balls.is_some() && rays == Rays::Tiles,
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
             film,
             rays,

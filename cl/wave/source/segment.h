@@ -23,6 +23,8 @@ typedef struct Segment {
 } Segment;
 CHECK_SIZE(Segment, SIZEOF_SEGMENT);
 
+#define segment_is_quick 1
+
 // Lengths are doubled, but for heights.
 typedef struct {
     Quadratic to_line, to_first, to_last; // squared distances: to the line, and to its ends

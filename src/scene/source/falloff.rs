@@ -47,6 +47,9 @@ pub struct Falloff {
     pub reach: Option<f64>,
 }
 
+/// Beyond so many radii a Gaussian is 0, as `cl/wave/source/profile.h` has it.
+const GAUSSIAN_END: f64 = 9.0;
+
 /// Steps of the sum across a core with a reach; an even number.
 const ACROSS: u32 = 200;
 
@@ -59,6 +62,13 @@ impl Falloff {
             }
             _ => true,
         }
+    }
+
+    /// Returns the distance from which on there is no light on the devices.
+    pub(crate) fn end(&self) -> Option<f64> {
+        let last = (self.profile == Profile::Gaussian).then_some(GAUSSIAN_END * self.radius);
+        let ends = [self.reach, last].into_iter().flatten();
+        ends.reduce(f64::min)
     }
 
     /// Returns whether it has a sharper peak than 1 over the distance.

@@ -71,6 +71,11 @@ pub(crate) trait SourceKind: HasLight {
     /// Returns where its core is, of a source whose values are right.
     fn core(&self) -> Core;
 
+    /// Returns a ball that its core lies in, centre and radius; of a core without end there is none.
+    fn ball(&self) -> Option<(DVec3, f64)> {
+        self.core().ball()
+    }
+
     /// Makes a source of this kind at about `place`, for the self-test of kernels.
     fn specimen(place: DVec3, profile: Profile) -> Self;
 

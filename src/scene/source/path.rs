@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::core::ball_around;
 use super::{Brightness, Core, HasLight, Light, Placement, Profile, SourceKind, item, source, source_struct};
 use crate::scene::colors::read_some_colors;
 use crate::scene::values::{Checked, Fault, finite, positive, read_vectors, vector};
@@ -329,6 +330,10 @@ impl SourceKind for LightPath {
             0.0 => 1,
             _ => ROUGH_CHORDS,
         }))
+    }
+
+    fn ball(&self) -> Option<(DVec3, f64)> {
+        Some(ball_around(self.pieces().iter().map(PathPiece::ball)))
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {

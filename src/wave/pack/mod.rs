@@ -3,6 +3,7 @@
 //! Light near a core depends on small differences of large coordinates: what float32 leaves of a number travels in a
 //! field named `rest` (`cl/fine.h`).
 
+mod ball;
 pub mod layout;
 mod view;
 
@@ -12,7 +13,9 @@ pub use view::{integrand, ray, view};
 
 use crate::opencl::device_struct;
 use crate::scene::kinds::{KIND_COUNT, for_each_kind};
-use crate::scene::{self, Falloff, HasLight, Light, Measure, Profile, Scene, SourcesStamp};
+use crate::scene::{
+    self, Falloff, HasLight, Light, Measure, Profile, Scene, SourceKind, SourcesStamp,
+};
 
 /// Where the float32 coordinates begin, how far the rays go from there, and what every emission is multiplied with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,6 +78,8 @@ pub struct Rows {
     pub list: Vec<Row>,
     /// Whether there are series among them.
     pub has_series: bool,
+    /// Where the balls around every kind's sources begin; `None`: no light ends, and there are none.
+    pub first_balls: Option<[u32; KIND_COUNT]>,
 }
 
 /// What the packing asks of every kind of source.
@@ -129,14 +134,25 @@ macro_rules! define_sources {
                 let rows = &mut self.rows;
                 rows.list.clear();
                 rows.has_series = false;
+                let has_ends = scene.any_falloff(|it| it.end().is_some());
+                let mut balls = Vec::new();
                 $(
                     self.$list.clear();
                     for source in scene.$list.iter() {
+                        let core = if has_ends { source.ball() } else { None };
                         for light in source.lights() {
+                            let before = self.$list.len();
                             source.pack_into(&mut self.$list, &light, anchor, rows);
+                            if has_ends {
+                                let ball = ball::ball(core, &light.falloff, anchor);
+                                balls.resize(balls.len() + self.$list.len() - before, ball);
+                            }
                         }
                     }
                 )*
+                let first_ball = self.rows.list.len();
+                self.rows.first_balls = has_ends.then(|| ball::first_balls(first_ball, self.counts()));
+                self.rows.list.append(&mut balls);
             }
 
             /// Returns how many there are of each kind, in the order of the table.
