@@ -119,6 +119,7 @@ pub fn program_text(program: &ProgramTask<'_>) -> (String, String) {
         has_shapes: program.has_shapes,
         has_convolutions: program.has_convolutions,
         fading: program.fading,
+        reduced: wave::Reduced::Sum,
         has_series: program.has_series,
         has_ends: program.has_shapes && program.kernel == "tiles",
         has_depth: program.has_depth,

@@ -267,6 +267,7 @@ impl KnownRay {
                 };
                 Some((self.simpson_200?, limit))
             }
+            Method::Jittered { .. } => None,
         }
     }
 }

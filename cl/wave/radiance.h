@@ -1,4 +1,5 @@
-// Radiance of a ray: the sum of emission times integral over the sources (Watanabe, Abe, Konno 2015, eq. 18, 20). The
+// Radiance of a ray: the sum of emission times integral over the sources (Watanabe, Abe, Konno 2015, eq. 18, 20), or
+// emission times the root of an integral of squares. The
 // host chooses the method (with -D EXACT the integrals themselves, else the paper's Simpson sums) and the kinds of
 // source that a scene has; other kinds cost neither compile time nor registers.
 #pragma once
@@ -25,8 +26,8 @@ KINDS(EMISSION_OF)
 // Adds the light of the sources of one kind that a launch names.
 #define ADD_LIGHT(kind, Type, number)                                                                                  \
     for (uint i = launch->begin[number]; i < launch->end[number]; ++i) {                                               \
-        const floatv integral = JOIN(kind, METHOD)(ray, sources, i, quadrature);                                       \
-        radiance = fma3(uniform3(kind##_emission(sources, i)), integral, radiance);                                    \
+        const floatv light = reduced(JOIN(kind, METHOD)(ray, sources, i, quadrature));                                 \
+        radiance = fma3(uniform3(kind##_emission(sources, i)), light, radiance);                                       \
     }
 
 // Returns the linear RGB before, and of the sources that a launch names, a ray in every lane. Each light is added to

@@ -12,7 +12,8 @@ __kernel void render(const View view, const FilmPart part, const Integrand integ
     if (begin >= part.count)
         return;
     const Sources sources = {KINDS(SOURCE_VALUE) rows};
-    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count, splat(view.ray_length));
+    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count, splat(view.ray_length),
+                                                part.first + begin + LANE_NUMBERS);
     const Screen screen = {&view, depths, integrand.softening2};
     const Ray ray = pixel_ray(&screen, part.first + begin);
     const float3v before = gathered_light(&part, begin, pixels);

@@ -32,7 +32,8 @@ __kernel void trace(const FilmPart part, const Integrand integrand, const Launch
     const Sources sources = {KINDS(SOURCE_VALUE) rows};
     const uintv index = min(begin + LANE_NUMBERS, (uintv)(part.count - 1));
     const Ray ray = listed_ray(rays, part.first + index, integrand.softening2);
-    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count, ray.length);
+    const Quadrature quadrature =
+        quadrature_of(&integrand, nodes, counts + launch.first_count, ray.length, part.first + index);
     const float3v before = gathered_light(&part, begin, pixels);
     const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch, before);
     store_pixels(&part, begin, radiance, FILM_ARGUMENT);

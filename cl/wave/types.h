@@ -16,6 +16,7 @@ typedef struct {
     float kinked_threshold; // and where the field along a ray has kinks
     uint node_count;        // nodes of the quadrature
     float absorption;       // a binary logarithm per world unit
+    uint seed;              // method jittered: chooses the random numbers
 } Integrand;
 CHECK_SIZE(Integrand, SIZEOF_INTEGRAND);
 

@@ -179,7 +179,7 @@ pub struct Overrides {
     /// The quadrature
     #[arg(long, requires = "scene")]
     pub method: Option<MethodName>,
-    /// Divisions of the Simpson rule, even, 2 to 65536; chooses --method simpson
+    /// Divisions of --method simpson or jittered, even, 2 to 65536; chooses simpson where the scene has neither
     #[arg(long, value_parser = divisions, allow_hyphen_values = true, requires = "scene")]
     pub divisions: Option<u32>,
     /// Relative error aimed at by the exact method; chooses --method exact
@@ -248,10 +248,12 @@ pub enum FormatName {
     Exr,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
     /// Composite Simpson rule with equal divisions, as in the paper of 2015
     Simpson,
+    /// Stratified samples, at a random place of each pixel's divisions
+    Jittered,
     /// The integral itself
     Exact,
 }
@@ -267,7 +269,7 @@ impl Overrides {
             && self.depth.is_none()
     }
 
-    /// Replaces what was typed. `keys` is what the file says of either method.
+    /// Replaces what was typed. `keys` is what the file says of all methods.
     pub fn apply(&self, scene: &mut Scene, keys: &MethodKeys) -> Result<(), Error> {
         if let Some(size) = self
             .size
@@ -292,30 +294,38 @@ impl Overrides {
     }
 
     fn method(&self, of_scene: Method, keys: &MethodKeys) -> Result<Method, Error> {
-        let asks_simpson = self.divisions.is_some();
+        let asks_sum = self.divisions.is_some();
         let asks_exact = self.tolerance.is_some() || self.sampling.is_some();
-        let is_simpson = match self.method {
-            Some(MethodName::Simpson) => true,
-            Some(MethodName::Exact) => false,
-            // Naming divisions asks for Simpson's rule; naming a tolerance asks for it to be met.
-            None if asks_simpson != asks_exact => asks_simpson,
-            None => matches!(of_scene, Method::Simpson { .. }),
+        let of_scene = match of_scene {
+            Method::Simpson { .. } => MethodName::Simpson,
+            Method::Jittered { .. } => MethodName::Jittered,
+            _ => MethodName::Exact,
         };
-        if is_simpson && self.sampling == Some(SamplingName::Tiles) {
-            let message =
-                "--sampling tiles is for --method exact; Simpson's rule takes every pixel";
+        let name = match self.method {
+            Some(name) => name,
+            // Naming divisions asks for a sum of so many; naming a tolerance asks for it to be met.
+            None if asks_sum == asks_exact => of_scene,
+            None if asks_exact => MethodName::Exact,
+            None if of_scene == MethodName::Exact => MethodName::Simpson,
+            None => of_scene,
+        };
+        if name != MethodName::Exact && self.sampling == Some(SamplingName::Tiles) {
+            let message = "--sampling tiles is for --method exact; the others take every pixel";
             return Err(Error::Unsupported(message.to_owned()));
         }
+        let divisions = self.divisions.unwrap_or(keys.divisions);
         let sampling = match self.sampling {
             Some(SamplingName::Pixels) => Sampling::Pixels,
             Some(SamplingName::Tiles) => Sampling::Tiles,
             None => keys.sampling,
         };
-        Ok(match is_simpson {
-            true => Method::Simpson {
-                divisions: self.divisions.unwrap_or(keys.divisions),
+        Ok(match name {
+            MethodName::Simpson => Method::Simpson { divisions },
+            MethodName::Jittered => Method::Jittered {
+                divisions,
+                seed: keys.seed,
             },
-            false => Method::Exact {
+            MethodName::Exact => Method::Exact {
                 tolerance: self.tolerance.unwrap_or(keys.tolerance),
                 sampling,
             },

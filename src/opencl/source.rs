@@ -19,6 +19,7 @@ pub const SHARED: &[SourceFile<'static>] = embed!(
     "fine.h",
     "roots.h",
     "elementary.h",
+    "random.h",
     "view.h",
     "film.h",
 );

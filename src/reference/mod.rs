@@ -7,6 +7,7 @@ mod field;
 mod quadrature;
 
 use std::ops::{ControlFlow, Range};
+use std::slice;
 
 use glam::DVec3;
 
@@ -18,7 +19,8 @@ pub use quadrature::integrate;
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
 use crate::scene::{
-    Absorption, CORE_FLOOR, Decay, Falloff, Measure, Method, Profile, Ray, Scene, ViewPlane,
+    Absorption, CORE_FLOOR, Decay, Falloff, Integration, Method, Profile, Ray, Reduction, Scene,
+    ViewPlane,
 };
 use crate::threads;
 
@@ -49,18 +51,26 @@ pub struct Integrand {
 impl Integrand {
     /// Returns `psi(L(s)) zeta(s)` for one source of emission 1.
     pub fn at(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
+        self.field(source, ray, s) * self.fading(ray, s)
+    }
+
+    fn field(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
         let floor2 = CORE_FLOOR * CORE_FLOOR * ray.span.length_squared();
         let radius = source.falloff.radius;
         let softening2 = radius * radius + self.softening * self.softening;
-        let field = source
+        source
             .field
-            .light(ray.at(s), &source.falloff, softening2, floor2);
+            .light(ray.at(s), &source.falloff, softening2, floor2)
+    }
+
+    /// Returns what decay and absorption leave of the light.
+    fn fading(&self, ray: &Ray, s: f64) -> f64 {
         let zeta = self.decay.map_or(1.0, |decay| decay.at(s));
         let length = s * ray.span.length();
         let left = self
             .absorption
             .map_or(1.0, |absorption| absorption.at(length));
-        zeta * left * field
+        zeta * left
     }
 
     /// Adds breaks to where a ray comes into the light: from there on it may be absorbed at once.
@@ -81,17 +91,25 @@ impl Integrand {
 /// Integrates a source's field times the decay over s in `[0,end]`, to [`RELATIVE_ERROR`].
 #[doc(hidden)]
 pub fn exact(source: &Source, ray: &Ray, integrand: &Integrand, end: f64) -> f64 {
+    let at = |s| integrand.at(source, ray, s);
+    adaptive(at, slice::from_ref(source), ray, integrand, end)
+}
+
+/// Integrates what is summed of some sources' fields.
+fn adaptive(
+    at: impl Fn(f64) -> f64,
+    sources: &[Source],
+    ray: &Ray,
+    integrand: &Integrand,
+    end: f64,
+) -> f64 {
     let mut breaks = Vec::with_capacity(16);
-    source.field.breaks(ray, &mut breaks);
-    add_edges(source, ray, &mut breaks);
+    for source in sources {
+        source.field.breaks(ray, &mut breaks);
+        add_edges(source, ray, &mut breaks);
+    }
     integrand.add_depths(ray, &mut breaks);
-    integrate(
-        |s| integrand.at(source, ray, s),
-        &mut breaks,
-        end,
-        RELATIVE_ERROR,
-    )
-    .value
+    integrate(at, &mut breaks, end, RELATIVE_ERROR).value
 }
 
 /// Adds a break wherever the ray comes to or leaves the light of a source that ends at a distance: no node may be near.
@@ -125,9 +143,30 @@ fn add_edges(source: &Source, ray: &Ray, breaks: &mut Vec<f64>) {
 /// Takes the same integral by the composite Simpson rule with an even number of equal divisions (2015, eq. 23).
 #[doc(hidden)]
 pub fn simpson(source: &Source, ray: &Ray, integrand: &Integrand, end: f64, divisions: u32) -> f64 {
+    simpson_sum(|s| integrand.at(source, ray, s), end, divisions)
+}
+
+fn simpson_sum(integrand: impl Fn(f64) -> f64, end: f64, divisions: u32) -> f64 {
     simpson_nodes(divisions)
-        .map(|(s, weight)| end * weight * integrand.at(source, ray, end * s))
+        .map(|(s, weight)| end * weight * integrand(end * s))
         .sum()
+}
+
+/// Takes the same integral by one sample in each of equal strata, at the same random place in all of them (Cook 1986).
+fn jittered(integrand: impl Fn(f64) -> f64, end: f64, divisions: u32, random: f64) -> f64 {
+    let length = end / f64::from(divisions);
+    let sample = |k: u32| length * integrand(length * (f64::from(k) + random));
+    (0..divisions).map(sample).sum()
+}
+
+/// Returns the random number, in `[0,1)`, of a pixel or ray: that of the devices, `cl/random.h`.
+fn random(number: u32, seed: u32) -> f64 {
+    let hash = |value: u32| {
+        let state = value.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
+        (word >> 22) ^ word
+    };
+    f64::from(hash(hash(number).wrapping_add(seed)) >> 8) / f64::from(1 << 24)
 }
 
 /// Gives parameter and weight of each of the `divisions + 1` samples of the composite Simpson rule over `[0,1]`.
@@ -202,7 +241,7 @@ pub(crate) struct Tracer {
     sources: Vec<Source>,
     integrand: Integrand,
     method: Method,
-    measure: Measure,
+    integration: Integration,
 }
 
 impl Tracer {
@@ -215,7 +254,7 @@ impl Tracer {
                 softening: scene.integration.softening,
             },
             method,
-            measure: scene.integration.measure,
+            integration: scene.integration,
         }
     }
 
@@ -226,33 +265,46 @@ impl Tracer {
         let end = scene.depth.as_ref().map_or(1.0, |depth| {
             plane.end(&ray, depth.as_slice()[index], depth.along())
         });
-        self.radiance(&ray, end)
+        self.radiance(&ray, end, index as u32)
     }
 
-    /// Returns the linear RGB along a ray, over s in `[0,end]`.
-    pub(crate) fn radiance(&self, ray: &Ray, end: f64) -> DVec3 {
-        let measure = match self.measure {
-            Measure::Parameter => 1.0,
-            Measure::Length => ray.span.length(),
+    /// Returns the linear RGB along a ray, over s in `[0,end]`; `number` is that of its pixel, or in its list.
+    pub(crate) fn radiance(&self, ray: &Ray, end: f64, number: u32) -> DVec3 {
+        // Parts of a light add up before its root is taken.
+        let parts = match self.integration.reduction {
+            Reduction::Sum => 1,
+            Reduction::Rms => self.sources.len().max(1),
         };
-        let light = |source: &Source| {
-            let integral = match self.method {
-                Method::Exact { .. } => exact(source, ray, &self.integrand, end),
-                Method::Simpson { divisions } => {
-                    simpson(source, ray, &self.integrand, end, divisions)
-                }
-            };
-            source.emission * integral * measure
+        let lights = self.sources.chunks(parts);
+        let light = lights.map(|parts| self.light(parts, ray, end, number));
+        light.sum::<DVec3>() * self.integration.scale(ray.span.length())
+    }
+
+    /// Returns the light of parts of one emission, over s.
+    fn light(&self, parts: &[Source], ray: &Ray, end: f64, number: u32) -> DVec3 {
+        let integrand = &self.integrand;
+        let reduction = self.integration.reduction;
+        let at = |s: f64| {
+            let fields = parts.iter().map(|part| integrand.field(part, ray, s));
+            reduction.summand(fields.sum()) * integrand.fading(ray, s)
         };
-        self.sources.iter().map(light).sum()
+        let integral = match self.method {
+            Method::Exact { .. } => adaptive(at, parts, ray, integrand, end),
+            Method::Simpson { divisions } => simpson_sum(at, end, divisions),
+            Method::Jittered { divisions, seed } => {
+                jittered(at, end, divisions, random(number, seed))
+            }
+        };
+        let emission = parts.first().map_or(DVec3::ZERO, |part| part.emission);
+        emission * reduction.of(integral)
     }
 
     /// Returns how many pixels take some tenths of a second, at 50 ns a sample.
     fn band_len(&self) -> usize {
-        let samples = match self.method {
-            Method::Exact { .. } => 500,
-            Method::Simpson { divisions } => divisions as usize + 1,
-        };
+        let samples = self
+            .method
+            .samples()
+            .map_or(500, |samples| samples as usize);
         (10_000_000 / (samples * self.sources.len().max(1))).clamp(16, 16384)
     }
 }

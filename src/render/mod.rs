@@ -16,7 +16,7 @@ use crate::error::{Error, Result, SceneError};
 use crate::image::{RadianceImage, kept_image};
 use crate::opencl::{MappedFilm, RendererOptions};
 use crate::reference::{self, Tracer};
-use crate::scene::{CheckedSources, Measure, Method, Ray, Scene};
+use crate::scene::{CheckedSources, Ray, Scene};
 use device::Backend;
 use one::{DeviceRenderer, Rows};
 use several::SeveralRenderer;
@@ -269,7 +269,8 @@ impl Renderer {
     }
 
     /// Integrates along single rays: linear RGB, over the parameter or the length of each ray as the scene's measure
-    /// says. The scene's camera, image and depth play no part.
+    /// says. The scene's camera, image and depth play no part. With [`Jittered`](crate::scene::Method::Jittered) a
+    /// ray's place in the list takes the place of its pixel's number.
     ///
     /// # Errors
     /// As [`Renderer::render`]; [`Error::Scene`] also for a ray that [`Ray::fault`] refuses.
@@ -285,14 +286,11 @@ impl Renderer {
             RendererBackend::Several(renderer) => renderer.integrate(scene, rays)?,
             RendererBackend::Reference { .. } => {
                 let tracer = Tracer::new(scene, scene.integration.method);
-                let radiances = rays.iter().map(|ray| tracer.radiance(ray, 1.0).to_array());
-                return Ok(radiances.collect());
+                let radiance = |(ray, number)| tracer.radiance(ray, 1.0, number).to_array();
+                return Ok(rays.iter().zip(0..).map(radiance).collect());
             }
         };
-        let measure = |ray: &Ray| match scene.integration.measure {
-            Measure::Parameter => 1.0,
-            Measure::Length => ray.span.length(),
-        };
+        let measure = |ray: &Ray| scene.integration.scale(ray.span.length());
         let colors = pixels.iter().zip(rays).map(|(pixel, ray)| {
             let [red, green, blue, _] = *pixel;
             [red, green, blue].map(|light| measure(ray) * f64::from(light))
@@ -363,14 +361,11 @@ fn draw_reference(
 /// quadrature are not counted.
 fn reference_cost(scene: &Scene, pixels: usize, time: Duration) -> FrameCost {
     let integrals = pixels as u64 * scene.light_count() as u64;
-    let samples = match scene.integration.method {
-        Method::Simpson { divisions } => u64::from(divisions) + 1,
-        Method::Exact { .. } => 0,
-    };
+    let samples = scene.integration.method.samples().unwrap_or(0);
     FrameCost {
         kernel: time,
         integrals,
-        samples: integrals * samples,
+        samples: integrals * u64::from(samples),
         launches: 1,
     }
 }

@@ -2,7 +2,7 @@
 
 use super::kinds::for_each_kind;
 use super::source::{Falloff, HasLight, Shared};
-use super::{Measure, Scene};
+use super::{Measure, Reduction, Scene};
 
 /// So far from a core, as a share of the picture's height, light is shown at about two thirds of white.
 const HALO: f64 = 0.008;
@@ -25,7 +25,7 @@ impl Scene {
     /// source that says by its peak how bright it is.
     #[must_use]
     pub fn fitting_exposure(&self) -> f64 {
-        let camera = &self.camera;
+        let (camera, reduction) = (&self.camera, self.integration.reduction);
         let height =
             2.0 * camera.eye.distance(camera.target) * (0.5 * camera.fov_y.to_radians()).tan();
         let mut brightest: f64 = 0.0;
@@ -33,13 +33,13 @@ impl Scene {
         self.for_each_shared(&mut |source| {
             has_peak |= source.has_peak();
             for light in source.lights() {
-                let beside = beside(light.falloff, HALO * height, self.ray_length());
+                let beside = beside(light.falloff, HALO * height, self.ray_length(), reduction);
                 brightest = brightest.max(light.emission().abs().max_element() * beside);
             }
         });
         let measure = match self.integration.measure {
             Measure::Length => 1.0,
-            Measure::Parameter => self.ray_length(),
+            Measure::Parameter => reduction.of(self.ray_length()),
         };
         match measure / brightest {
             times if has_peak || !times.is_normal() => 0.0,
@@ -49,16 +49,22 @@ impl Scene {
 }
 
 /// Returns the light of a ray that passes a core of coefficient 1 at a distance, measured by length.
-fn beside(falloff: Falloff, distance: f64, ray_length: f64) -> f64 {
+fn beside(falloff: Falloff, distance: f64, ray_length: f64, reduction: Reduction) -> f64 {
     let wider = Falloff {
         radius: falloff.radius.hypot(distance),
         reach: falloff.reach.map(|reach| reach.max(2.0 * distance)),
         ..falloff
     };
+    let far = ray_length.max(2.0 * wider.radius);
+    if reduction != Reduction::Sum {
+        let end = wider.reach.unwrap_or(far);
+        let squares = wider.sum_across(end, |field| reduction.summand(field));
+        return reduction.of(squares);
+    }
     match wider.light_across() {
         light if light.is_finite() => light,
         _ => Falloff {
-            reach: Some(ray_length.max(2.0 * wider.radius)),
+            reach: Some(far),
             ..wider
         }
         .light_across(),

@@ -101,6 +101,8 @@ pub struct Integration {
     pub method: Method,
     /// Over what the integral runs.
     pub measure: Measure,
+    /// What a pixel has of the integrals.
+    pub reduction: Reduction,
     /// Softening radius epsilon, world units: the squared distance to every core grows by its square.
     pub softening: f64,
 }
@@ -110,7 +112,18 @@ impl Default for Integration {
         Self {
             method: Method::default(),
             measure: Measure::Length,
+            reduction: Reduction::Sum,
             softening: 0.0,
+        }
+    }
+}
+
+impl Integration {
+    /// Returns what the light of a ray of this length, world units, is multiplied with if it was taken over s.
+    pub(crate) fn scale(&self, length: f64) -> f64 {
+        match self.measure {
+            Measure::Parameter => 1.0,
+            Measure::Length => self.reduction.of(length),
         }
     }
 }
@@ -123,6 +136,15 @@ pub enum Method {
     Simpson {
         /// Number of equal divisions, even, 2 to 65536.
         divisions: u32,
+    },
+    /// Stratified samples (Cook 1986): one in each of equal divisions, at the same random place in all divisions of a
+    /// ray. For comparison with the Simpson rule: what that makes rings, here is grain.
+    Jittered {
+        /// Number of equal divisions, 1 to 65536.
+        divisions: u32,
+        /// Chooses the random numbers: a pixel's is a function of it and of the pixel's number, by rows from the top
+        /// left; that of a ray that is no pixel's, of its place in the list.
+        seed: u32,
     },
     /// The integral itself.
     Exact {
@@ -149,19 +171,20 @@ impl Method {
         }
     }
 
-    /// Returns its name in files: `simpson` or `exact`.
+    /// Returns its name in files: `simpson`, `jittered` or `exact`.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Simpson { .. } => "simpson",
+            Self::Jittered { .. } => "jittered",
             Self::Exact { .. } => "exact",
         }
     }
 
-    /// Returns the relative error aimed at; the default's for the Simpson rule, which aims at none.
+    /// Returns the relative error aimed at; the default's for sums, which aim at none.
     pub(crate) fn tolerance(&self) -> f64 {
         match *self {
-            Self::Simpson { .. } => 1e-3,
+            Self::Simpson { .. } | Self::Jittered { .. } => 1e-3,
             Self::Exact { tolerance, .. } => tolerance,
         }
     }
@@ -169,7 +192,7 @@ impl Method {
     /// Returns where integrals are taken.
     pub(crate) fn sampling(&self) -> Sampling {
         match *self {
-            Self::Simpson { .. } => Sampling::Pixels,
+            Self::Simpson { .. } | Self::Jittered { .. } => Sampling::Pixels,
             Self::Exact { sampling, .. } => sampling,
         }
     }
@@ -178,14 +201,24 @@ impl Method {
     #[cfg(feature = "papers")]
     pub(crate) fn sampling_or_default(&self) -> Sampling {
         match *self {
-            Self::Simpson { .. } => Sampling::default(),
+            Self::Simpson { .. } | Self::Jittered { .. } => Sampling::default(),
             Self::Exact { sampling, .. } => sampling,
+        }
+    }
+
+    /// Returns how many samples a ray takes of a light; `None` where the light decides that.
+    pub(crate) fn samples(&self) -> Option<u32> {
+        match *self {
+            Self::Simpson { divisions } => Some(divisions + 1),
+            Self::Jittered { divisions, .. } => Some(divisions),
+            Self::Exact { .. } => None,
         }
     }
 
     pub(super) fn check(&self) -> Checked {
         match *self {
             Self::Simpson { divisions } => check_divisions(divisions),
+            Self::Jittered { divisions, .. } => check_strata(divisions),
             Self::Exact { tolerance, .. } => check_tolerance(tolerance),
         }
     }
@@ -203,6 +236,14 @@ pub(super) fn check_divisions(divisions: u32) -> Checked {
         return Ok(());
     }
     let message = format!("{divisions}; Simpson's rule needs an even number from 2 to 65536");
+    Err(Fault::new("divisions", message))
+}
+
+pub(super) fn check_strata(divisions: u32) -> Checked {
+    if (1..=65536).contains(&divisions) {
+        return Ok(());
+    }
+    let message = format!("{divisions}; stratified samples need 1 to 65536 divisions");
     Err(Fault::new("divisions", message))
 }
 
@@ -238,4 +279,41 @@ pub enum Measure {
     Parameter,
     /// Length in world units: `|E - S|` times as much (2010, 2006).
     Length,
+}
+
+/// What a pixel has of the integrals along its ray.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Reduction {
+    /// Their sum (2015).
+    #[default]
+    Sum,
+    /// Colour times coefficient times the root of the integral of the squared field, times the decay: light that lies
+    /// along a ray stands out less (2015, section 5.4). Such light does not add up: for scenes of one light.
+    Rms,
+}
+
+impl Reduction {
+    /// Returns what becomes of an integral, for [`Reduction::Rms`] of squares.
+    pub(crate) fn of(self, integral: f64) -> f64 {
+        match self {
+            Self::Sum => integral,
+            Self::Rms => integral.sqrt(),
+        }
+    }
+
+    /// Returns what is integrated of a field.
+    pub(crate) fn summand(self, field: f64) -> f64 {
+        match self {
+            Self::Sum => field,
+            Self::Rms => field * field,
+        }
+    }
+
+    #[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
+    #[cfg(feature = "files")]
+    pub(super) fn is_sum(&self) -> bool {
+        *self == Self::Sum
+    }
 }

@@ -5,6 +5,7 @@
 //! may get further fields: write `..Torus::new(0.9)` and the like.
 
 mod camera;
+pub(crate) mod chain;
 mod colors;
 #[cfg(feature = "files")]
 mod depth_report;
@@ -20,6 +21,7 @@ mod list;
 #[cfg(feature = "files")]
 mod preset;
 mod ray;
+mod reduction;
 mod source;
 mod stamp;
 mod validate;
@@ -29,12 +31,15 @@ mod warnings;
 use glam::DVec3;
 
 pub use camera::Camera;
+pub use chain::Dashes;
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;
 #[cfg(feature = "files")]
 pub use file::MethodKeys;
 pub use group::{Group, Repeat, Rotation};
-pub use integration::{Absorption, CORE_FLOOR, Decay, Integration, Measure, Method, Sampling};
+pub use integration::{
+    Absorption, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
+};
 pub use list::List;
 #[cfg(feature = "files")]
 pub use preset::Preset;

@@ -57,6 +57,7 @@ impl Scene {
         check_softening(integration.softening).map_err(of("integration"))?;
         check_display(&self.display).map_err(of("display"))?;
         self.check_depth().map_err(of(""))?;
+        self.check_reduction()?;
         let brightness = self.brightness();
         let of_line = brightness.most / brightness.least_distance;
         if of_line > BRIGHTEST {
@@ -84,6 +85,7 @@ impl Scene {
             most: decay * measure.max(1.0),
             least_distance,
             measure: self.integration.measure,
+            reduction: self.integration.reduction,
         }
     }
 

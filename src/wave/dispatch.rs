@@ -268,7 +268,7 @@ impl Wave {
             Rays::Pixels | Rays::Listed => launched.integrals,
         };
         cost.samples += match plan.task.method {
-            Variant::Simpson => launched.samples as u64,
+            Variant::Simpson | Variant::Jittered => launched.samples as u64,
             Variant::Exact { .. } => counted[counts::NODES],
         };
         Ok(())

@@ -16,14 +16,15 @@ pub(crate) struct Task {
     pub method: Variant,
     /// Which kinds of source the scene has.
     pub kinds: Present,
-    /// Whether any source falls off with the squared distance.
+    /// Whether lights are sums, and any source falls off with the squared distance.
     pub has_squares: bool,
-    /// Whether any has no closed form for how it falls off.
+    /// Whether lights are sums, and any has no closed form for how it falls off.
     pub has_shapes: bool,
     /// Whether any adds up the light of all points of its core.
     pub has_convolutions: bool,
     /// The power of the decay where light fades in another way than by that of 2015.
     pub fading: Option<u32>,
+    pub reduced: Reduced,
     /// Whether any has a series over its core.
     pub has_series: bool,
     /// Tiles: whether the light of any ends.
@@ -32,6 +33,17 @@ pub(crate) struct Task {
     pub has_depth: bool,
     pub film: FilmFormat,
     pub rays: Rays,
+}
+
+/// What kernels make of an integral.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Reduced {
+    /// Itself.
+    Sum,
+    /// Its root; the fields are packed as their squares.
+    Root,
+    /// The root of that of squared fields.
+    RootOfSquares,
 }
 
 /// Which rays a kernel takes.
@@ -49,6 +61,7 @@ pub(crate) enum Rays {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Variant {
     Simpson,
+    Jittered,
     Exact {
         /// Of the rule: what its kernels are built with.
         nodes: u32,
@@ -146,13 +159,20 @@ fn task_text(task: &Task) -> (&'static str, String) {
 /// Returns what that is built with, where `workers` work-items share a tile.
 fn task_definitions(workers: u32, counts_samples: bool, task: &Task, rule: &Rule) -> String {
     let mut definitions = common_definitions(counts_samples);
-    if let Variant::Exact { .. } = task.method {
-        definitions += &rule.definitions();
+    match task.method {
+        Variant::Simpson => {}
+        Variant::Jittered => definitions += " -D JITTERED",
+        Variant::Exact { .. } => definitions += &rule.definitions(),
     }
-    if task.has_squares {
+    definitions += match task.reduced {
+        Reduced::Sum => "",
+        Reduced::Root => " -D ROOT",
+        Reduced::RootOfSquares => " -D ROOT -D SQUARED",
+    };
+    if task.has_squares || task.reduced == Reduced::Root {
         definitions += " -D INVERSE_SQUARES";
     }
-    if task.has_shapes || task.fading.is_some() {
+    if task.has_shapes || task.fading.is_some() || task.reduced == Reduced::RootOfSquares {
         definitions += " -D SHAPES";
     }
     if task.has_convolutions {

@@ -67,7 +67,7 @@ macro_rules! define_lists {
 for_each_kind!(define_lists);
 
 impl Lists {
-    /// Makes the device's nodes of the Simpson rule equal to these.
+    /// Makes the device's nodes of a sum equal to these.
     pub(super) fn upload_nodes(&mut self, compute: &Compute, nodes: &[Node]) -> Result<()> {
         self.nodes.upload(compute, nodes)
     }

@@ -12,7 +12,7 @@ mod partition;
 mod plan;
 mod rule;
 mod self_test;
-mod simpson;
+mod sums;
 mod tiles;
 
 use std::collections::VecDeque;
@@ -20,7 +20,7 @@ use std::ops::Range;
 
 use opencl3::event::Event;
 
-pub(crate) use kernels::{Rays, Task, Variant, common_definitions, program_text};
+pub(crate) use kernels::{Rays, Reduced, Task, Variant, common_definitions, program_text};
 pub(crate) use kinds::{Present, resolve, resolve_text};
 pub use pace::Split;
 pub use partition::TILE_SHARES;
@@ -32,7 +32,7 @@ use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{DepthImage, ImageSize};
 use crate::opencl::{Compute, FilmFormat, Handle, RendererOptions, UploadedShared, Watch};
-use crate::scene::{Method, Ray, Scene};
+use crate::scene::{Method, Ray, Reduction, Scene};
 use counts::Counts;
 use dispatch::Launched;
 use kernels::Kernels;
@@ -171,6 +171,7 @@ impl Wave {
             measure: pack::even_decay(scene),
             pixel: 0.0,
             tolerance: scene.integration.method.tolerance(),
+            reduction: scene.integration.reduction,
         };
         let stamp = self.packed.pack(scene, anchor);
         let task = self.task(scene, Rays::Listed, FilmFormat::Floats);
@@ -185,19 +186,24 @@ impl Wave {
 
     fn task(&mut self, scene: &Scene, rays: Rays, film: FilmFormat) -> Task {
         let rule = self.rule_for(scene);
+        let reduced = self.reduced(scene);
+        let facts = self.packed.facts(scene);
+        let is_sum = reduced == Reduced::Sum;
         Task {
             method: match scene.integration.method {
                 Method::Simpson { .. } => Variant::Simpson,
+                Method::Jittered { .. } => Variant::Jittered,
                 Method::Exact { .. } => Variant::Exact {
                     nodes: rule.nodes,
                     coarse: rule.coarse,
                 },
             },
-            kinds: self.packed.sources.counts().map(|count| count > 0),
-            has_squares: self.packed.facts(scene).has_squares,
-            has_shapes: self.packed.facts(scene).has_shapes,
-            has_convolutions: self.packed.facts(scene).has_convolutions,
+            has_squares: is_sum && facts.has_squares,
+            has_shapes: is_sum && facts.has_shapes,
+            has_convolutions: facts.has_convolutions,
             fading: scene.fading().map(|fading| fading.power),
+            reduced,
+            kinds: self.packed.sources.counts().map(|count| count > 0),
             has_series: self.packed.sources.rows.has_series,
             has_ends: self.packed.sources.rows.first_balls.is_some() && rays == Rays::Tiles,
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
@@ -206,10 +212,24 @@ impl Wave {
         }
     }
 
+    fn reduced(&mut self, scene: &Scene) -> Reduced {
+        match scene.integration.reduction {
+            Reduction::Sum => Reduced::Sum,
+            Reduction::Rms if self.packed.facts(scene).has_closed_squares => Reduced::Root,
+            Reduction::Rms => Reduced::RootOfSquares,
+        }
+    }
+
     fn rule_for(&mut self, scene: &Scene) -> Rule {
-        let facts = self.packed.facts(scene);
         let tolerance = scene.integration.method.tolerance();
-        let fitting = Rule::of(tolerance, facts.has_sharp_peaks, facts.has_both_signs);
+        let reduced = self.reduced(scene);
+        let facts = self.packed.facts(scene);
+        let (is_sharp, has_both_signs) = (facts.has_sharp_peaks, facts.has_both_signs);
+        let fitting = match reduced {
+            Reduced::Sum => Rule::of(tolerance, is_sharp, has_both_signs),
+            Reduced::Root => Rule::of(tolerance, true, false),
+            Reduced::RootOfSquares => Rule::of_squares(tolerance),
+        };
         self.rule.unwrap_or(fitting)
     }
 
@@ -229,8 +249,9 @@ impl Wave {
                 // Of a ray that ends early, only the kernel knows where its nodes are.
                 let is_known = !task.has_depth && task.fading.is_none();
                 let decay = scene.decay.filter(|decay| is_known && decay.power > 0);
-                simpson::nodes(divisions, decay)
+                sums::simpson(divisions, decay)
             }
+            Method::Jittered { divisions, .. } => sums::strata(divisions),
             Method::Exact { .. } => Vec::new(),
         };
         let integrand = pack::integrand(scene, &rule, nodes.len() as u32);

@@ -64,7 +64,7 @@ impl Plan {
         };
         let work = Work {
             node_count: match task.method {
-                Variant::Simpson => integrand.node_count,
+                Variant::Simpson | Variant::Jittered => integrand.node_count,
                 Variant::Exact { nodes, .. } => 8 * nodes,
             },
             source_count: counts.iter().sum(),

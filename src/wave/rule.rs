@@ -30,6 +30,9 @@ const MOST_FOR_SHARP_PEAKS: f64 = 1e-3;
 /// that of a pixel.
 const CANCELLED: f64 = 1.0 / 30.0;
 
+/// By how much less squares of fields may be off, whose peaks are sharper than those of fields.
+const SQUARED: f64 = 0.3;
+
 const fn rule(nodes: u32, smooth_threshold: f32, kinked_threshold: f32) -> Rule {
     Rule {
         nodes,
@@ -56,6 +59,11 @@ impl Rule {
             .iter()
             .find(serves)
             .map_or(strictest, |(_, rule)| *rule)
+    }
+
+    /// Chooses the rule that meets a tolerance where fields are squared.
+    pub fn of_squares(tolerance: f64) -> Self {
+        Self::of(SQUARED * tolerance.min(MOST_FOR_SHARP_PEAKS), true, false)
     }
 
     /// Gives the rule as the kernels' compiler gets it: nodes in (0,1), their weights, and those weights times the
@@ -153,5 +161,6 @@ mod tests {
         assert_eq!(rule(1e-3), rule(2e-3));
         assert_ne!(rule(1e-3), rule(0.9e-3));
         assert_eq!(Rule::of(3e-3, false, true), rule(1e-4));
+        assert_eq!(Rule::of_squares(1e-2), rule(1e-4));
     }
 }

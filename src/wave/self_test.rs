@@ -7,14 +7,15 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use super::Wave;
-use super::kernels::{Rays, Task, Variant};
+use super::kernels::{Rays, Reduced, Task, Variant};
 use crate::error::{Error, Result};
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{Compute, Film, FilmFormat, Pixel, Program};
 use crate::reference::Tracer;
 use crate::scene::kinds::for_each_kind;
 use crate::scene::{
-    Absorption, Camera, Decay, Integration, Measure, Method, Profile, Sampling, Scene, SourceKind,
+    Absorption, Camera, Decay, Integration, Measure, Method, Profile, Reduction, Sampling, Scene,
+    SourceKind,
 };
 use crate::threads;
 
@@ -153,7 +154,11 @@ fn known_scenes(task: Task) -> Result<[Scene; 2]> {
     for (scene, along) in [(&mut near, DepthAlong::Ray), (&mut far, DepthAlong::Axis)] {
         scene.image = SIZE;
         scene.integration = integration(task, scene.integration.softening);
-        add_specimens(scene, task, Profile::Inverse);
+        let first = match task.reduced {
+            Reduced::Sum | Reduced::Root => Profile::Inverse,
+            Reduced::RootOfSquares => Profile::InverseSquare,
+        };
+        add_specimens(scene, task, first); // where a root is taken, the only light
         if task.has_squares {
             add_specimens(scene, task, Profile::InverseSquare);
         }
@@ -176,8 +181,7 @@ fn known_scenes(task: Task) -> Result<[Scene; 2]> {
     Ok([near, far])
 }
 
-/// Returns how a task integrates. The tolerance is the strictest that a task's kernels serve (see [`super::Rule`]), or
-/// one that float32 meets.
+/// Returns how a task integrates, to a tolerance that its kernels, and no others, serve (see [`super::Rule`]).
 fn integration(task: Task, softening: f64) -> Integration {
     let sampling = match task.rays {
         Rays::Tiles => Sampling::Tiles,
@@ -185,8 +189,12 @@ fn integration(task: Task, softening: f64) -> Integration {
     };
     let method = match task.method {
         Variant::Simpson => Method::Simpson { divisions: 64 },
-        Variant::Exact { nodes, .. } => Method::Exact {
-            tolerance: if nodes <= 4 { 0.1 } else { 1e-3 },
+        Variant::Jittered => Method::Jittered {
+            divisions: 64,
+            seed: 3,
+        },
+        Variant::Exact { coarse, .. } => Method::Exact {
+            tolerance: if coarse { 1e-3 } else { 1e-4 },
             sampling,
         },
     };
@@ -194,6 +202,10 @@ fn integration(task: Task, softening: f64) -> Integration {
         method,
         softening,
         measure: Measure::Parameter, // as listed rays are
+        reduction: match task.reduced {
+            Reduced::Sum => Reduction::Sum,
+            Reduced::Root | Reduced::RootOfSquares => Reduction::Rms,
+        },
     }
 }
 
@@ -219,6 +231,8 @@ macro_rules! define_specimens {
             let mut kinds = task.kinds.into_iter();
             $(if kinds.next() == Some(true) {
                 let specimen: crate::scene::$Type = SourceKind::specimen(place, profile);
+                let is_even = task.reduced != Reduced::Sum;
+                let specimen = if is_even { specimen.evened() } else { specimen };
                 let has_series = task.has_series && profile == Profile::Inverse;
                 scene.$list.push(if has_series { specimen.with_series() } else { specimen });
             })*

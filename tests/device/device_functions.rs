@@ -102,6 +102,7 @@ pub const ANCHOR: Anchor = Anchor {
     measure: 1.0,
     pixel: 0.0,
     tolerance: 1e-3,
+    reduction: energywave::scene::Reduction::Sum,
 };
 
 /// Worst relative error of the inverse cube root over 60 powers of ten.

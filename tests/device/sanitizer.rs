@@ -139,7 +139,11 @@ fn every_kernel_runs_on_every_lane_width() {
     builds.extend(is_simulator.then(shared_tiles));
     for options in builds {
         let mut renderer = Renderer::with_options(&common::device(), &options).unwrap();
-        for method in [Method::simpson(4), Method::default()] {
+        let jittered = Method::Jittered {
+            divisions: 4,
+            seed: 1,
+        };
+        for method in [Method::simpson(4), jittered, Method::default()] {
             scene.integration.method = method;
             // Squares and other shapes behind a wall with an edge.
             let mut hidden = common::squared(&scene);

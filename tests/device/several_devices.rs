@@ -109,6 +109,13 @@ fn equal_devices_draw_the_image_of_one_to_the_bit() {
             }
             scenes.push(scene);
         }
+        for mut scene in [ring(37, 101, None), ring(130, 33, None)] {
+            scene.integration.method = Method::Jittered {
+                divisions: 20,
+                seed: 1,
+            };
+            scenes.push(scene);
+        }
         let mut one = on(1);
         let mut several = [on(2), on(3)];
         for scene in &scenes {

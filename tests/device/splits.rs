@@ -51,6 +51,12 @@ fn methods() -> [Method; 3] {
     ]
 }
 
+/// Every pixel has its own random number.
+const JITTERED: Method = Method::Jittered {
+    divisions: 17,
+    seed: 3,
+};
+
 /// Points and lines, whose kernels are soon compiled.
 fn small_scene() -> Scene {
     let mut scene = common::empty_scene(WIDTH, HEIGHT);
@@ -86,12 +92,12 @@ fn drawn(wave: &mut Wave, compute: &Compute, scene: &Scene, format: FilmFormat) 
 }
 
 /// The bits of a frame cut in every way, and by time, against those of the whole.
-fn same_bits_by_every_split(scene: &Scene, lanes: u32, formats: &[FilmFormat]) {
+fn same_bits_by_every_split(scene: &Scene, methods: &[Method], lanes: u32, formats: &[FilmFormat]) {
     let compute = common::compute();
     let mut wave = Wave::new(&compute, &common::options(lanes, "")).unwrap();
-    for (method, format) in methods()
-        .into_iter()
-        .flat_map(|method| formats.iter().map(move |format| (method, *format)))
+    for (method, format) in methods
+        .iter()
+        .flat_map(|method| formats.iter().map(move |format| (*method, *format)))
     {
         let mut scene = scene.clone();
         scene.integration.method = method;
@@ -124,21 +130,27 @@ fn a_frame_has_the_same_bits_however_it_is_cut() {
             true => &FORMATS[..],
             false => &FORMATS[..1],
         };
-        same_bits_by_every_split(&small_scene(), lanes, formats);
+        same_bits_by_every_split(&small_scene(), &methods(), lanes, formats);
     }
 }
 
 #[test]
 fn a_frame_of_every_kind_with_depths_has_the_same_bits_however_it_is_cut() {
     let lanes = common::device().lanes;
-    same_bits_by_every_split(&full_scene(), lanes, &FORMATS[..1]);
+    same_bits_by_every_split(&full_scene(), &methods(), lanes, &FORMATS[..1]);
+}
+
+#[test]
+fn random_numbers_of_pixels_do_not_depend_on_how_a_frame_is_cut() {
+    let lanes = common::device().lanes;
+    same_bits_by_every_split(&small_scene(), &[JITTERED], lanes, &FORMATS[..1]);
 }
 
 #[test]
 fn listed_rays_have_the_same_bits_however_they_are_cut() {
     let rays: Vec<_> = built_in_rays().unwrap().iter().map(|it| it.ray).collect();
     let mut renderer = common::renderer(common::device().lanes, "");
-    for method in [Method::simpson(16), Method::default()] {
+    for method in [Method::simpson(16), JITTERED, Method::default()] {
         let mut scene = small_scene();
         scene.integration.method = method;
         let traced = |renderer: &mut Renderer, split| {

@@ -11,7 +11,7 @@ use crate::common::layer::{self, LAYERS, Layer};
 use crate::common::program::{Folder, SCENE, device, expect};
 use energywave::Ray;
 use energywave::image::DepthAlong;
-use energywave::scene::{Method, Sampling};
+use energywave::scene::{Method, Reduction, Sampling};
 use energywave::{Error, Renderer, RendererOptions, Scene};
 use glam::DVec3;
 
@@ -58,16 +58,29 @@ fn draws() -> Vec<(&'static str, Scene)> {
         scene.integration.method = method;
         scene
     };
-    let (pixels, tiles) = (common::by(Sampling::Pixels), common::by(Sampling::Tiles));
+    let tiles = common::by(Sampling::Tiles);
+    let strict = Method::Exact {
+        tolerance: 1e-4, // of another rule, with kernels of its own
+        sampling: Sampling::Pixels,
+    };
     let mut hidden = common::squared(&with(tiles));
     hidden.depth = Some(common::depths(&hidden, DepthAlong::Ray, |x, _| {
         3.0 + f64::from(x)
     }));
+    let jittered = Method::Jittered {
+        divisions: common::DIVISIONS,
+        seed: 1,
+    };
+    let mut roots = common::squared(&with(tiles));
+    roots.spheres.clear();
+    roots.integration.reduction = Reduction::Rms;
     vec![
         ("simpson", with(Method::simpson(common::DIVISIONS))),
-        ("pixels", with(pixels)),
+        ("jittered", with(jittered)),
+        ("pixels", with(strict)),
         ("tiles", with(tiles)),
         ("depth", hidden),
+        ("roots", roots),
         ("rays", lit),
     ]
 }

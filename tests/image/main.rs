@@ -4,9 +4,11 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod along;
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
-mod convolution; // holds light that adds up over a core to its definition
+mod convolution;
+mod convolved_paths; // holds light that adds up over a core to its definition
 mod defaults; // looks at a scene that names nothing
 mod depth; // compares occluded images with those of rays that are cut by hand
 mod exact; // holds the method `exact` to every tolerance
@@ -15,6 +17,7 @@ mod fading_forms; // holds the reference to closed forms of points and lines tha
 mod figures; // draws every scene by every method in the form of the device
 mod hard_scenes; // takes the method `exact` through cores, along them, and to extreme numbers
 mod images; // bounds the worst pixel of the Simpson rule
+mod jittered; // holds stratified samples to their definition, and shows what they gain
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
 mod layers; // holds several lights of one core to as many sources
 mod parts; // draws rows, rays and changed scenes as the whole image has them
@@ -22,6 +25,7 @@ mod path_core; // what a path is by definition
 mod paths; // holds paths to their definition
 mod presets; // draws every preset, and looks at its whites and blacks
 mod rays; // compares single rays with integrals that are known to nine digits
+mod rms; // holds roots of integrals of squares to their definition
 mod search; // draws what examples/hard_scenes has found
 mod segment; // holds segments to their definition
 mod shape_forms; // takes closed forms of shapes along every part of a ray

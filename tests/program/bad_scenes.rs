@@ -180,7 +180,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[integration]\nmethod = \"romberg\"\n",
         "5:10: integration.method",
-        "expected `simpson` or `exact`",
+        "expected one of `simpson`, `jittered`, `exact`",
     ),
     (
         "[integration]\nsampling = \"rows\"\n",
@@ -190,7 +190,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[integration]\nmethod = \"simpson\"\nsampling = \"tiles\"\n",
         "6:12: integration.sampling",
-        "Simpson's rule takes every pixel",
+        "\"simpson\" takes every pixel",
     ),
     (
         "[integration]\nsoftening = -0.1\n",

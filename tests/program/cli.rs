@@ -155,7 +155,7 @@ fn usage_errors_exit_with_2_and_write_nothing() {
     expect(
         &folder.render("out.png", &["--method", "romberg"]),
         2,
-        "simpson, exact",
+        "simpson, jittered, exact",
     );
     assert!(folder.names().is_empty(), "{:?}", folder.names());
 }

@@ -108,6 +108,28 @@ fn host_opencl_draws_into_its_own_image() {
 }
 
 #[test]
+fn jittered_says_what_it_gains() {
+    let (names, _, said) = drawn_and_said("jittered");
+    assert_eq!(names, ["figure-14-jittered.png"]);
+    let rows = said.lines().skip(1).map(|row| {
+        let numbers = row.split_whitespace().skip(1);
+        numbers.map(|number| number.parse().unwrap()).collect()
+    });
+    let rows: Vec<Vec<f64>> = rows.collect();
+    assert_eq!(rows.len(), 4, "{said}");
+    for pair in rows.chunks(2) {
+        let [simpson, jittered] = pair else {
+            panic!("{said}")
+        };
+        assert_eq!(simpson[0], jittered[0]);
+        assert!(
+            jittered[2] < 0.8 * simpson[2] && jittered[2] < jittered[1],
+            "{said}"
+        );
+    }
+}
+
+#[test]
 fn several_devices_share_a_picture() {
     let (names, folder, said) = drawn_and_said("several_devices");
     assert_eq!(names, ["curve.png"]);

@@ -5,7 +5,8 @@
 mod common;
 
 mod bad_looks; // has every fault of layers named with its place
-mod bad_scenes; // has every fault of a scene file named with its place
+mod bad_scenes;
+mod bad_series; // has every fault of a scene file named with its place
 mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
 #[cfg(unix)] // shells, signals and the loader's environment variables
 mod cli; // runs the program: exit codes, messages and outputs
@@ -16,6 +17,7 @@ mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
 mod groups; // has groups placed as the sources that they stand for
 mod messages; // is told what to write instead, and nothing raw or long
+mod methods; // chooses ways to integrate, in files and by options
 #[cfg(unix)] // as cli
 mod outputs; // writes to links, pipes and devices, and reads scenes from pipes
 #[cfg(unix)] // as cli

@@ -6,8 +6,8 @@ use crate::common;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, ToneMap};
 use energywave::internals::KINDS;
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Integration, Layer, LightPath, Measure, Method,
-    PathShape, Profile, Sampling, Segment, Sphere, Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Dashes, Decay, Integration, Layer, LightPath, Measure,
+    Method, PathShape, Profile, Reduction, Sampling, Segment, Sphere, Torus,
 };
 use energywave::{ErrorKind, Scene};
 use fastrand::Rng;
@@ -95,6 +95,13 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             radius: number(random),
             ..Segment::new(vector(random), vector(random))
         });
+        scene.segments.push(Segment {
+            radii: Some(vec![number(random), 0.0, number(random)]),
+            taper_lengths: [number(random), 0.0],
+            intensity: Some(vec![number(random); 4]),
+            colors: Some(vec![vector(random), vector(random)]),
+            ..Segment::new(vector(random), vector(random))
+        });
         let points = (0..7).map(|_| vector(random)).collect();
         scene.paths.push(LightPath {
             shape: [PathShape::Spline, PathShape::Quadratic, PathShape::Cubic][random.usize(0..3)],
@@ -110,14 +117,20 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
         scene.tori.push(Torus {
             center: vector(random),
             axis: vector(random),
-            major_radius: number(random),
             coefficient: number(random),
             color: vector(random),
             profile,
             radius: number(random),
             reach: Some(1200.0 + number(random)),
-            peak: None,
             layers: layers(random),
+            start: random.bool().then(|| vector(random)),
+            sweep: random.bool().then_some([-30.0, 300.0 / 7.0]),
+            dashes: random.bool().then_some(Dashes {
+                count: 3,
+                fill: 1.0 / 3.0,
+                offset: -0.1,
+            }),
+            ..Torus::new(number(random))
         });
         for intensity in [None, Some(vec![0.0, 0.1, 1.0 / 3.0]), Some(vec![2.0; 9])] {
             scene.curves.push(Curve {
@@ -143,12 +156,15 @@ fn rich_scenes() -> Vec<Scene> {
         tolerance: 1.0 / 3000.0,
         sampling,
     };
+    let jittered = |divisions, seed| Method::Jittered { divisions, seed };
     let methods = [
         Method::simpson(2),
         Method::simpson(65536),
         exact(Sampling::Tiles),
         exact(Sampling::Pixels),
         Method::default(),
+        jittered(1, 0),
+        jittered(65535, u32::MAX),
     ];
     let mut scenes = Vec::new();
     for (index, method) in methods.into_iter().cycle().take(60).enumerate() {
@@ -166,6 +182,7 @@ fn rich_scenes() -> Vec<Scene> {
         scene.integration = Integration {
             method,
             measure: [Measure::Parameter, Measure::Length][index % 2],
+            reduction: Reduction::Sum, // of as many sources
             softening: [0.0, number(random)][index / 2 % 2],
         };
         scene.display.exposure = number(random).min(99.0);

@@ -91,11 +91,11 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
 #endif
 #pragma unroll
         for (int k = 0; k < PAIRS_AT_ONCE; ++k) {
-            const floatv right = right_v[k] * KIND_near_field(&panel->near, right_s[k]);
+            const floatv right = right_v[k] * summand_of(KIND_near_field(&panel->near, right_s[k]));
 #if KIND_HAS(jumps)
             right_sight[k] = panel->near.sight;
 #endif
-            const floatv left = left_v[k] * KIND_near_field(&panel->near, left_s[k]);
+            const floatv left = left_v[k] * summand_of(KIND_near_field(&panel->near, left_s[k]));
 #if KIND_HAS(jumps)
             left_sight[k] = panel->near.sight;
 #endif

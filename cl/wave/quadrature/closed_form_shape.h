@@ -7,7 +7,7 @@
 #pragma once
 #include "closed_form.h"
 
-#if defined(SHAPES) && defined(EXACT) && !defined(FADING)
+#if defined(SHAPES) && defined(EXACT) && !defined(FADING) && !defined(SQUARED)
 #ifndef CUBIC_PART // a test spoils it
 #define CUBIC_PART (1.0f / 3.0f)
 #endif
@@ -104,6 +104,10 @@ INLINE bool closed_shape_over(const Stretch *const stretch, const Quadratic *con
         return true;
     if (any_lane(is_lit & ((distance2->least < profile->floor2) | (stretch->light_from != stretch->light_to))))
         return false;
+#ifdef WIDENS
+    if (any_lane(is_lit & (distance2->bare_slope != distance2->slope)))
+        return false;
+#endif
     const floatv way = select(part.length * per_slope, span, is_whole);
     const floatv middle = 0.5f * (part.x0 + part.x1), half2 = 0.25f * part.length * part.length;
     const intv is_short =

@@ -28,6 +28,9 @@ INLINE uint stretch_panels(const stretch_peaks *const peaks, const Quadrature *c
 typedef struct {
     floatv ahead, slope, least; // squared distance (ahead + slope x)^2 + least
     floatv light, growth, left2;
+#ifdef WIDENS
+    floatv bare_ahead, bare_slope; // of the squared distance without softening
+#endif
     Profile profile;
 } stretch_near;
 
@@ -45,6 +48,10 @@ INLINE stretch_near stretch_approach(const stretch_peaks *const peaks, const flo
     near.light = fma(near.growth, *base - stretch->from, stretch->light_from);
     near.profile = peaks->profile;
     near.left2 = peaks->left2;
+#ifdef WIDENS
+    near.bare_slope = distance2->bare_slope;
+    near.bare_ahead = fma(distance2->bare_slope, *base - distance2->bare_nearest, distance2->bare_ahead);
+#endif
     peak->re = -near.ahead * per_slope;
     peak->im = 0.5f * twice_sqrt(max(near.least, peaks->profile.floor2)) * per_slope;
     peak->is_flat = near.least < peaks->profile.floor2;
@@ -56,7 +63,12 @@ INLINE floatv stretch_near_field(const stretch_near *const near, const floatv x)
     const floatv ahead = fma(near->slope, x, near->ahead);
     const floatv distance2 = fma(ahead, ahead, near->least);
     const floatv per_distance = coarse_twice_inverse_sqrt(max(distance2, near->profile.floor2));
-    const floatv left2 = max(fma(-ahead, ahead, near->left2), 0.0f);
+#ifdef WIDENS
+    const floatv bare_ahead = fma(near->bare_slope, x, near->bare_ahead);
+#else
+    const floatv bare_ahead = ahead;
+#endif
+    const floatv left2 = max(fma(-bare_ahead, bare_ahead, near->left2), 0.0f);
     return fma(near->growth, x, near->light) * shaped(&near->profile, distance2, left2, per_distance);
 }
 
@@ -69,7 +81,7 @@ INLINE floatv stretch_near_field(const stretch_near *const near, const floatv x)
 CALL_IF_SCALAR floatv shape_over(const Stretch whole, const Quadratic *const distance2, const Profile *const profile,
                                  const Quadrature *const quadrature) {
     const floatv left2 = left_at_least(profile, distance2);
-#ifndef FADING
+#if !defined(FADING) && !defined(SQUARED)
     floatv closed;
     if (quadrature->decay.beta == 0.0f && closed_shape_over(&whole, distance2, profile, left2, &closed))
         return quadrature->decay.strength * closed;
@@ -78,9 +90,14 @@ CALL_IF_SCALAR floatv shape_over(const Stretch whole, const Quadratic *const dis
     intv is_lit = whole.to > whole.from;
     floatv from = whole.from, to = whole.to;
     if (HAS_END(profile)) {
+#ifdef WIDENS
+        const floatv per_slope = inverse(max(distance2->bare_slope, 1e-18f));
+        const floatv middle = fma(-distance2->bare_ahead, per_slope, distance2->bare_nearest);
+#else
         const floatv per_slope = inverse(max(distance2->slope, 1e-18f));
-        const floatv half_length = 0.5f * twice_sqrt(max(left2, 1e-30f)) * per_slope;
         const floatv middle = fma(-distance2->ahead, per_slope, distance2->nearest);
+#endif
+        const floatv half_length = 0.5f * twice_sqrt(max(left2, 1e-30f)) * per_slope;
         is_lit = left2 > 0.0f;
         from = max(from, middle - half_length), to = min(to, middle + half_length);
     }

@@ -4,7 +4,8 @@
 //     asinh(h / rho) + asinh(b / rho) = 2 artanh(length / (r0 + r1)),
 //
 // rho the distance to the whole line, r0 and r1 those to the ends, h and b the way from either end to the foot of P,
-// towards the other end. It is additive: pieces that meet have no joint.
+// towards the other end. It is additive: pieces that meet have no joint. Where light changes evenly from one end to the
+// other, its growth over the piece adds 2 (h - length / 2) (artanh(m) - m), m = length / (r0 + r1).
 //
 // Along a ray it is integrated by nodes; it peaks where the ray comes closest to the line between the ends, or to an
 // end, in the complex plane where one of these squared distances is 0.
@@ -20,11 +21,16 @@ typedef struct {
     Quadratic to_line, to_first, to_last; // squared distances: to the line, and to its ends; all softened
     Height over_first, over_last;         // over the planes through the ends, along the line
     float length;
+    float light, growth; // -D SERIES: what light is multiplied with in the middle, and how that grows with the length
 } ConvolvedPiece;
+
+#ifndef OF_GROWTH // a test spoils it
+#define OF_GROWTH 2.0f
+#endif
 
 // Returns the field of a piece, from squared distances and heights.
 INLINE floatv convolved(const floatv line2, const floatv first2, const floatv last2, const floatv over_first,
-                        const floatv over_last, const float length) {
+                        const floatv over_last, const float length, const float light, const float growth) {
     const floatv to_first = 0.5f * twice_sqrt(first2), to_last = 0.5f * twice_sqrt(last2);
     const floatv ratio = length * inverse(to_first + to_last), m2 = ratio * ratio;
     // Where the logarithm is small.
@@ -35,13 +41,21 @@ INLINE floatv convolved(const floatv line2, const floatv first2, const floatv la
     const floatv below = select(select(first, splat(1.0f), is_beyond_first) * select(last, splat(1.0f), is_before_last),
                                 line2, is_beyond_first & is_before_last);
     const floatv field = LN_2 * binary_logarithm(max(above * inverse(below), 1.0f));
-    return select(field, series, m2 < 0.2f);
+    const floatv even = select(field, series, m2 < 0.2f);
+#ifdef SERIES
+    const floatv excess = fma(splat(0.5f), even, -ratio);
+    const floatv least = ratio * m2 * artanh_series(min(m2, 0.2f));
+    const floatv beyond_middle = over_first - 0.5f * length;
+    return fma(splat(light), even, OF_GROWTH * growth * beyond_middle * select(excess, least, m2 < 0.2f));
+#else
+    return even;
+#endif
 }
 
 INLINE floatv convolved_at(const ConvolvedPiece *const piece, const floatv s) {
     return convolved(quadratic_at(&piece->to_line, s), quadratic_at(&piece->to_first, s),
                      quadratic_at(&piece->to_last, s), height_at(&piece->over_first, s),
-                     height_at(&piece->over_last, s), piece->length);
+                     height_at(&piece->over_last, s), piece->length, piece->light, piece->growth);
 }
 
 #ifdef EXACT
@@ -111,7 +125,7 @@ floatv beside_at(const QuadraticBeside *const q, const floatv x) {
 typedef struct {
     QuadraticBeside to_line, to_first, to_last;
     Height over_first, over_last; // from the base on
-    float length;
+    float length, light, growth;
 } convolution_near;
 
 INLINE convolution_near convolution_approach(const convolution_peaks *const peaks, const floatv from, const floatv to,
@@ -126,7 +140,7 @@ INLINE convolution_near convolution_approach(const convolution_peaks *const peak
     near.to_last = quadratic_beside(&piece->to_last, *base);
     near.over_first = piece->over_first, near.over_last = piece->over_last;
     near.over_first.at = height_at(&piece->over_first, *base), near.over_last.at = height_at(&piece->over_last, *base);
-    near.length = piece->length;
+    near.length = piece->length, near.light = piece->light, near.growth = piece->growth;
     const floatv slope = select(select(near.to_first.slope, near.to_last.slope, is_last), near.to_line.slope, is_line);
     const floatv ahead = select(select(near.to_first.ahead, near.to_last.ahead, is_last), near.to_line.ahead, is_line);
     const floatv least = select(select(near.to_first.least, near.to_last.least, is_last), near.to_line.least, is_line);
@@ -140,7 +154,8 @@ INLINE convolution_near convolution_approach(const convolution_peaks *const peak
 // Returns the field at s = base + x.
 INLINE floatv convolution_near_field(const convolution_near *const near, const floatv x) {
     return convolved(beside_at(&near->to_line, x), beside_at(&near->to_first, x), beside_at(&near->to_last, x),
-                     height_at(&near->over_first, x), height_at(&near->over_last, x), near->length);
+                     height_at(&near->over_first, x), height_at(&near->over_last, x), near->length, near->light,
+                     near->growth);
 }
 
 #define convolution_has_kinks 1 // more than one peak

@@ -6,6 +6,9 @@
 #include "../quadrature/quadrature.h"
 #include "../quadrature/stretch.h"
 #include "../tiles/clearance.h"
+#ifdef CONVOLUTION
+#include "convolution.h"
+#endif
 #include "profile.h"
 #include "quadratic.h"
 #include "sources.h"
@@ -13,13 +16,17 @@
 // Its rows: two for every level, with its numbers of corners and groups, the corners of a group, and its first row; and
 // the squared distance from which on it serves, and how far it is off. At the first row, a ball for every group of
 // pieces (centre, radius); then four rows for every corner: where it is, with the length of the piece that begins there
-// (0 at the last corner); what float32 leaves of that, with what light is multiplied with there; the unit direction of
-// the piece; and what float32 leaves of that.
+// (0 at the last corner of pieces that follow each other); what float32 leaves of that, with what light is multiplied
+// with there; the unit direction of the piece, with how thick the core is at the corner, where that changes along it;
+// and what float32 leaves of that. Where light changes along the core follow, for every corner, the core's own
+// tangents: that after it, and that before it, with 0 where no piece ends, 2 where one goes on smoothly into the next,
+// else 1.
 typedef struct LightPath {
     float4 emission;
     uint row; // its first
     uint level_count;
-    uint padding_0, padding_1;
+    uint is_even;    // 1: light and thickness are the same all along it, and there are no tangents
+    float most_bend; // by how much they may be off a straight line in the middle of a stretch, of themselves
     Falloff falloff;
 } LightPath;
 CHECK_SIZE(LightPath, SIZEOF_LIGHTPATH);
@@ -27,6 +34,7 @@ CHECK_SIZE(LightPath, SIZEOF_LIGHTPATH);
 #define path_is_quick 0
 
 // These use the struct.
+#include "path/light.h"
 #include "path/nearest.h"
 #include "path/next.h"
 
@@ -61,16 +69,54 @@ INLINE path_rows path_level_for(const path_path *const path) {
     return rows;
 }
 
+#ifdef CONVOLUTION
+#define PATH_IS_CONVOLVED(path) ((path)->source->falloff.profile == 5u)
+
+// Returns a piece whose points are added up; one that has no length adds nothing.
+INLINE ConvolvedPiece path_piece(const path_path *const path, const path_rows *const rows, const uint k) {
+    __global const float4 *const corner = rows->corners + 4u * k, *const next = corner + 4;
+    const fine3v direction = fine3(corner[2], corner[3]);
+    // What is added up is softened, and has no other floor.
+    const floatv softening2 = path->profile.softening2 + path->profile.floor2;
+    ConvolvedPiece piece;
+    piece.to_line = distance2_to_line(path->ray, corner[0], corner[1], corner[2], corner[3], softening2);
+    piece.to_first = distance2_to_point(path->ray, corner[0], corner[1], softening2);
+    piece.to_last = distance2_to_point(path->ray, next[0], next[1], softening2);
+    piece.over_first = height_over(path->ray, corner[0], corner[1], direction);
+    piece.over_last = height_over(path->ray, next[0], next[1], direction);
+    piece.over_first.at *= 2.0f, piece.over_first.slope *= 2.0f;
+    piece.over_last.at *= 2.0f, piece.over_last.slope *= 2.0f;
+    piece.length = 2.0f * corner[0].w;
+    piece.light = 0.5f * (corner[1].w + next[1].w);
+    piece.growth = (next[1].w - corner[1].w) / piece.length;
+    return piece;
+}
+
+#define FOR_EACH_PIECE(k, rows)                                                                                        \
+    for (uint k = 0; k + 1u < (rows)->corner_count; ++k)                                                               \
+        if ((rows)->corners[4u * k].w > 0.0f)
+#endif
+
 floatv path_field(const path_path *const path, const floatv s) {
+#ifdef CONVOLUTION
+    if (PATH_IS_CONVOLVED(path)) {
+        floatv field = splat(0.0f);
+        FOR_EACH_PIECE(k, &path->rows) {
+            const ConvolvedPiece piece = path_piece(path, &path->rows, k);
+            field += convolved_at(&piece, s);
+        }
+        return field;
+    }
+#endif
     const path_spot spot = path_spot_at(path->ray, s);
     const path_groups groups = path_all_groups(&path->rows);
     const path_place nearest = path_nearest(&path->rows, &groups, &spot);
-    const floatv field = field_at(&path->profile, fma(splat(4.0f), nearest.distance2, path->profile.softening2));
+    const floatv bare2 = 4.0f * nearest.distance2, softened2 = bare2 + path->profile.softening2;
 #ifdef SERIES
-    const path_view view = path_view_of(&path->rows, path->ray, &spot, &nearest);
-    return field * path_light(&view, splat(0.0f));
+    const path_light light = path_light_at(&path->rows, path->source->is_even, &nearest, spot.at);
+    return light.value * field_of_core(&path->profile, bare2, fma(light.radius, light.radius, softened2));
 #else
-    return field;
+    return field_of_core(&path->profile, bare2, softened2);
 #endif
 }
 
@@ -93,6 +139,16 @@ PER_RAY_IF_WIDE floatv path_integral(const Ray *const ray, const Sources *const 
                                      const Quadrature *const quadrature) {
     const path_path path = path_along(ray, sources, index);
     const path_rows level = path_level_for(&path), *const rows = &level;
+#if defined(CONVOLUTION) && defined(EXACT)
+    if (PATH_IS_CONVOLVED(&path)) {
+        floatv sum = splat(0.0f);
+        FOR_EACH_PIECE(k, rows) {
+            const ConvolvedPiece piece = path_piece(&path, rows, k);
+            sum += convolved_over(&piece, ray->end, quadrature);
+        }
+        return sum;
+    }
+#endif
     floatv s = splat(0.0f), end = ray->end;
     path_groups groups = path_all_groups(rows);
 #ifdef SHAPES
@@ -112,15 +168,29 @@ PER_RAY_IF_WIDE floatv path_integral(const Ray *const ray, const Sources *const 
         const path_view view = path_view_of(rows, ray, &spot, &place);
         const floatv most = path_far_step(&view.distance2, beyond);
         const path_place next = path_next(rows, &groups, ray, &spot, &place, &view, most);
-        const floatv to = select(s + next.x, end, (next.x >= beyond) | (intv)(left == 1u ? -1 : 0));
-        const Quadratic distance2 = path_distance2(&path, rows, &place, &view);
-        Stretch stretch = evenly_lit(s, to);
+        floatv to = select(s + next.x, end, (next.x >= beyond) | (intv)(left == 1u ? -1 : 0));
 #ifdef SERIES
-        stretch.light_from = path_light(&view, splat(0.0f)), stretch.light_to = path_light(&view, to - s);
+        const floatv whole = to;
+        if (left > 1u)
+            to = path_straight_to(rows, path.source, ray, &place, s, whole);
+#endif
+        Quadratic distance2 = path_distance2(&path, rows, &place, &view);
+        Stretch stretch = evenly_lit(s, to);
+        const path_spot next_spot = path_spot_at(ray, to);
+#ifdef SERIES
+        const path_light from_light = path_light_at(rows, path.source->is_even, &place, spot.at);
+        const path_light to_light = path_light_at(rows, path.source->is_even, &place, next_spot.at);
+        stretch.light_from = from_light.value, stretch.light_to = to_light.value;
+        const floatv widening = (to_light.radius - from_light.radius) * inverse(max(to - s, 1e-30f));
+        distance2 = widened(distance2, fma(widening, distance2.nearest - s, from_light.radius), widening);
 #endif
         integral += integral_over(stretch, &distance2, &path.profile, quadrature);
-        s = to, place = next;
-        spot = path_spot_at(ray, s);
+#ifdef SERIES
+        place = select_place(place, next, to >= whole);
+#else
+        place = next;
+#endif
+        s = to, spot = next_spot;
     }
     return integral;
 }

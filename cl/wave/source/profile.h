@@ -25,7 +25,7 @@ typedef struct {
 #define IS_SQUARE(profile) 0u
 #endif
 
-#ifdef FADING // has no closed forms
+#if defined(FADING) || defined(SQUARED) // have no closed forms
 #define IS_SHAPED(profile) 1
 #define HAS_END(profile) ((profile)->end2 < ENDLESS)
 #elif defined(SHAPES)
@@ -85,9 +85,8 @@ floatv error_function_ratio(const floatv x) {
     return select(far, 1.128379167f * fma(series, x2, splat(1.0f)), x2 < 0.25f);
 }
 
-// Returns what a squared distance with softening lacks to where light ends, a reach; 0 beyond.
-INLINE floatv left_of(const Profile *const profile, const floatv distance2) {
-    const floatv bare2 = distance2 - profile->softening2;
+// Returns what a squared distance without softening lacks to where light ends, a reach; 0 beyond.
+INLINE floatv left_of(const Profile *const profile, const floatv bare2) {
     return max((profile->end2 - bare2) + profile->end2_rest, 0.0f);
 }
 
@@ -131,7 +130,7 @@ INLINE floatv shaped(const Profile *const profile, const floatv distance2, const
 INLINE floatv field_of(const Profile *const profile, const floatv distance2, const floatv per_distance) {
 #ifdef SHAPES
     if (IS_SHAPED(profile))
-        return shaped(profile, distance2, left_of(profile, distance2), per_distance);
+        return shaped(profile, distance2, left_of(profile, distance2 - profile->softening2), per_distance);
 #endif
 #ifdef INVERSE_SQUARES
     return profiled(per_distance, profile->is_square);
@@ -142,6 +141,15 @@ INLINE floatv field_of(const Profile *const profile, const floatv distance2, con
 
 INLINE floatv field_at(const Profile *const profile, const floatv distance2) {
     return field_of(profile, distance2, twice_inverse_sqrt(max(distance2, profile->floor2)));
+}
+
+// Returns the field of a core whose thickness is its own: from the squared distance without softening, and with it.
+INLINE floatv field_of_core(const Profile *const profile, const floatv bare2, const floatv distance2) {
+#ifdef SHAPES
+    if (IS_SHAPED(profile))
+        return shaped(profile, distance2, left_of(profile, bare2), twice_inverse_sqrt(max(distance2, profile->floor2)));
+#endif
+    return field_at(profile, distance2);
 }
 
 // Clips a part of a ray to where a core within a ball can light it.

@@ -7,6 +7,10 @@
 #include "../../view.h"
 #include "profile.h"
 
+#if defined(SHAPES) && defined(SERIES) // a core may get thicker along the ray
+#define WIDENS
+#endif
+
 typedef struct {
     floatv slope;
     floatv offset;
@@ -14,6 +18,9 @@ typedef struct {
     floatv nearest, ahead; // the parameter of the least, or next to it, and slope s + offset there
 #ifdef SHAPES
     floatv bare, bare_rest; // the least without softening, and what float32 leaves of it
+#endif
+#ifdef WIDENS
+    floatv bare_slope, bare_nearest, bare_ahead; // the same of the squared distance without softening
 #endif
 } Quadratic;
 
@@ -54,6 +61,9 @@ INLINE void refine_bare(Quadratic *const q, const fine3v at_nearest) {
     const floatv rest = from_finev(fine_subtract(fine_dot3(at_nearest, at_nearest), to_finev(q->least)));
     q->bare = q->least;
     q->bare_rest = select(fma(-q->ahead, q->ahead, rest), splat(0.0f), fabs(q->nearest) > 1e3f);
+#ifdef WIDENS
+    q->bare_slope = q->slope, q->bare_nearest = q->nearest, q->bare_ahead = q->ahead;
+#endif
 }
 #endif
 
@@ -71,6 +81,9 @@ Quadratic doubled(const Quadratic q, const floatv softening2) {
     Quadratic d = {2.0f * q.slope, 2.0f * q.offset, fma(splat(4.0f), q.least, softening2), q.nearest, 2.0f * q.ahead};
 #ifdef SHAPES
     d.bare = 4.0f * q.bare, d.bare_rest = 4.0f * q.bare_rest;
+#endif
+#ifdef WIDENS
+    d.bare_slope = 2.0f * q.bare_slope, d.bare_nearest = q.bare_nearest, d.bare_ahead = 2.0f * q.bare_ahead;
 #endif
     return d;
 }
@@ -139,5 +152,30 @@ INLINE Quadratic select_quadratic(const Quadratic a, const Quadratic b, const in
 #ifdef SHAPES
     q.bare = select(a.bare, b.bare, is_b), q.bare_rest = select(a.bare_rest, b.bare_rest, is_b);
 #endif
+#ifdef WIDENS
+    q.bare_slope = select(a.bare_slope, b.bare_slope, is_b);
+    q.bare_nearest = select(a.bare_nearest, b.bare_nearest, is_b);
+    q.bare_ahead = select(a.bare_ahead, b.bare_ahead, is_b);
+#endif
     return q;
 }
+
+#ifdef SERIES
+// Adds the square of a thickness that changes along the ray: so thick at the parameter of the least, and by so much
+// thicker with s. The sum of two squares is (slope s + offset)^2 + least again.
+INLINE Quadratic widened(const Quadratic q, const floatv thickness, const floatv widening) {
+    const floatv slope2 = fma(q.slope, q.slope, widening * widening);
+    const floatv slope = 0.5f * twice_sqrt(max(slope2, 1e-36f));
+    const floatv per_slope = inverse(slope);
+    // From there on, the sum is slope2 x^2 + 2 (..) x + ..
+    const floatv to_least = -fma(q.slope, q.ahead, widening * thickness) * per_slope * per_slope;
+    const floatv beside = fma(q.slope, thickness, -widening * q.ahead) * per_slope;
+    Quadratic w = q;
+    w.slope = slope;
+    w.nearest = q.nearest + to_least;
+    w.ahead = splat(0.0f);
+    w.offset = -slope * w.nearest;
+    w.least = fma(beside, beside, q.least);
+    return w;
+}
+#endif

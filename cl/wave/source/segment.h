@@ -95,8 +95,8 @@ INLINE bool segment_is_line(const segment_path *const path, const Ray *const ray
 
 #ifdef CONVOLUTION
 INLINE ConvolvedPiece segment_piece(const segment_path *const path) {
-    ConvolvedPiece piece = {path->to_line,    path->to_first,  path->to_last,
-                            path->over_first, path->over_last, path->length};
+    ConvolvedPiece piece = {path->to_line,   path->to_first, path->to_last, path->over_first,
+                            path->over_last, path->length,   1.0f,          0.0f};
     piece.over_first.at *= 2.0f, piece.over_first.slope *= 2.0f;
     piece.over_last.at *= 2.0f, piece.over_last.slope *= 2.0f;
     return piece;

@@ -3,10 +3,10 @@
 // all others.
 
 #ifdef DEPTH
-// Returns the field where the ray ends.
+// Returns what is summed of the field where the ray ends.
 INLINE floatv KIND_at_end(const Ray *const ray, const Sources *const sources, const uint index) {
     const KIND_path path = KIND_along(ray, sources, index);
-    return KIND_field(&path, ray->end);
+    return summand_of(KIND_field(&path, ray->end));
 }
 #endif
 
@@ -46,7 +46,7 @@ INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, 
     for (uint round = 0; round < ROUNDS; ++round) {
         const Ray *const ray = &rays->rays[round];
         const floatv integral = KIND_integral(ray, task->sources, index, task->quadrature);
-        show(integral, first_ray(round), memory->integrals);
+        show(reduced(integral), first_ray(round), memory->integrals);
         *integrals += LANES;
 #ifdef DEPTH
         if (end_error > 0.0f && round < TILE_ROUNDS && is_node(first_ray(round))) {

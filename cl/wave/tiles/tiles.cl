@@ -172,8 +172,8 @@ INLINE uint settle_sources(const TileTask *const task, const Tile *const tile, _
             const uint i = begin + lowest_bit(left);                                                                   \
             if (PASSES_BY(number, i, cone))                                                                            \
                 continue;                                                                                              \
-            const floatv integral = kind##_integral(ray, task->sources, i, task->quadrature);                          \
-            radiance = fma3(uniform3(kind##_emission(task->sources, i)), integral, radiance);                          \
+            const floatv light = reduced(kind##_integral(ray, task->sources, i, task->quadrature));                    \
+            radiance = fma3(uniform3(kind##_emission(task->sources, i)), light, radiance);                             \
             *integrals += LANES;                                                                                       \
         }                                                                                                              \
     }
@@ -312,7 +312,8 @@ tiles(const View view, const FilmPart part, const Integrand integrand, const Lau
       const TilePass pass, __global uint *const restrict open_tiles, __global float *const restrict open_light) {
     __local TileMemory memory;
     const Sources sources = {KINDS(SOURCE_VALUE) rows};
-    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count, splat(view.ray_length));
+    const Quadrature quadrature = quadrature_of(&integrand, nodes, counts + launch.first_count, splat(view.ray_length),
+                                                (uintv)(0)); // rays of a tile have no numbers
     const OpenTiles open = {open_tiles, open_light};
     const Screen screen = {&view, depths, integrand.softening2};
     const uint end_row = (part.first + part.count) / view.width;

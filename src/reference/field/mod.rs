@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::scene::kinds::for_each_kind;
-use crate::scene::{Falloff, HasLight, Light, Ray, Scene};
+use crate::scene::{Falloff, HasLight, Light, Ray, Scene, SourceKind};
+
+mod added;
 
 macro_rules! field_modules {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
@@ -13,8 +15,10 @@ macro_rules! field_modules {
         pub fn sources(scene: &Scene) -> Vec<Source> {
             let mut sources = Vec::with_capacity(scene.source_count());
             $(for source in &scene.$list {
-                for light in source.lights() {
-                    source.add_parts(light, &mut |part| sources.push(part));
+                let add = &mut |part| sources.push(part);
+                match source.as_chain() {
+                    Some(chain) => path::add_chain(&chain, add),
+                    None => source.lights().for_each(|light| source.add_parts(light, add)),
                 }
             })*
             sources
@@ -76,8 +80,9 @@ impl Source {
 
 /// What the reference asks of every kind of source.
 trait Parts {
-    /// Calls `add` with each part of the source that glows with one of its lights.
-    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source));
+    /// Calls `add` with each part of the source that glows with one of its lights; with none of a kind that is always
+    /// drawn as a chain.
+    fn add_parts(&self, _: Light, _: &mut dyn FnMut(Source)) {}
 }
 
 /// Makes the sample of a core that is equally bright everywhere.

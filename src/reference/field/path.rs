@@ -1,68 +1,89 @@
 //! A chain of pieces in float64, curves as they are: the nearest point of every piece among the roots of a polynomial.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::{Field, Parts, Sample, Source, crossing, even};
-use crate::scene::{Light, LightPath, PathPiece, Ray};
+use super::added::Added;
+use super::{Field, Parts, Sample, Source, crossing};
+use crate::scene::chain::{LightAlong, LitChain, Piece, Run, series_at};
+use crate::scene::{Falloff, LightPath, Profile, Ray};
 
-/// The pieces, each with a ball around it, and what light is multiplied with along them.
+/// A piece of a core.
 #[derive(Debug, Clone)]
-struct Chain {
-    pieces: Vec<(PathPiece, DVec3, f64)>,
-    /// The share of the whole length at which each piece begins, and 1.
-    begins: Vec<f64>,
-    /// Shares of the length, with a value at each, linear between; none: 1 everywhere.
-    knots: Vec<(f64, f64)>,
+pub struct Part {
+    pub(super) piece: Piece,
+    /// A ball in which it lies.
+    center: DVec3,
+    ball: f64,
+    length: f64,
+    /// The run that it belongs to, and from where to where it goes of that, in shares of its length.
+    run: usize,
+    shares: [f64; 2],
 }
 
-/// Stretches of a piece whose lengths are added up.
-const STRETCHES: u32 = 256;
-
-/// Returns the length of a piece up to t, by Simpson's rule.
-fn length(piece: &PathPiece, t: f64) -> f64 {
-    let [_, c1, c2, c3] = piece.0;
-    let speed = |t: f64| (c1 + (2.0 * c2 + 3.0 * c3 * t) * t).length();
-    if (c2, c3) == (DVec3::ZERO, DVec3::ZERO) {
-        return t * speed(0.0);
-    }
-    let at = |k: u32| speed(t * f64::from(k) / f64::from(STRETCHES));
-    let pairs = (0..STRETCHES / 2).map(|k| at(2 * k) + 4.0 * at(2 * k + 1) + at(2 * k + 2));
-    pairs.sum::<f64>() * t / f64::from(3 * STRETCHES)
+/// The pieces of all runs, and what light and thickness are along them.
+#[derive(Debug, Clone)]
+pub struct Nearest {
+    pub(super) parts: Arc<[Part]>,
+    runs: Arc<[Run]>,
+    values: Vec<(f64, f64)>,
+    radii: Vec<(f64, f64)>,
 }
 
-impl Parts for LightPath {
-    fn add_parts(&self, light: Light, add: &mut dyn FnMut(Source)) {
-        let with_ball = |piece: PathPiece| {
-            let (center, radius) = piece.ball();
-            (piece, center, radius)
+/// Always a chain.
+impl Parts for LightPath {}
+
+/// Calls `add` with each light of a chain.
+pub fn add_chain(lit: &LitChain, add: &mut dyn FnMut(Source)) {
+    let runs: Arc<[Run]> = lit.chain.runs.clone().into();
+    let parts: Arc<[Part]> = parts_of(&runs).into();
+    for LightAlong { light, values, radii } in &lit.lights {
+        let field = Nearest {
+            parts: parts.clone(),
+            runs: runs.clone(),
+            values: values.clone(),
+            radii: radii.clone(),
         };
-        let pieces: Vec<_> = self.pieces().into_iter().map(with_ball).collect();
-        let mut begins = vec![0.0];
-        for (piece, ..) in &pieces {
-            begins.push(begins[begins.len() - 1] + length(piece, 1.0));
-        }
-        let whole = begins[begins.len() - 1];
-        begins.iter_mut().for_each(|begin| *begin /= whole);
-        for (light, knots) in self.along(&light) {
-            let chain = Chain {
-                pieces: pieces.clone(),
-                begins: begins.clone(),
-                knots,
-            };
-            add(Source::new(chain, light));
-        }
+        add(match light.falloff.profile {
+            Profile::Convolution => Source::new(Added(field), *light),
+            _ => Source::new(field, *light),
+        });
     }
 }
 
-impl Chain {
+fn parts_of(runs: &[Run]) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for (index, run) in runs.iter().enumerate() {
+        let lengths = run.lengths();
+        let whole: f64 = lengths.iter().sum();
+        let mut begin = 0.0;
+        for (piece, length) in run.pieces.iter().zip(lengths) {
+            let end = begin + length / whole;
+            let (center, ball) = piece.ball();
+            parts.push(Part {
+                piece: *piece,
+                center,
+                ball,
+                length,
+                run: index,
+                shares: [begin, end],
+            });
+            begin = end;
+        }
+    }
+    parts
+}
+
+impl Nearest {
     /// Finds the squared distance to the nearest point, its piece, and where it lies on that.
     fn nearest(&self, point: DVec3) -> (f64, usize, f64) {
         let mut nearest = (f64::INFINITY, 0, 0.0);
-        for (index, (piece, center, radius)) in self.pieces.iter().enumerate() {
-            let beyond = (center.distance(point) - radius).max(0.0);
+        for (index, part) in self.parts.iter().enumerate() {
+            let beyond = (part.center.distance(point) - part.ball).max(0.0);
             if beyond * beyond < nearest.0 {
-                for_each_stationary(piece, |v| v, point, &mut |t| {
-                    let distance2 = piece.at(t).distance_squared(point);
+                for_each_stationary(&part.piece, |v| v, point, &mut |t| {
+                    let distance2 = part.piece.at(t).distance_squared(point);
                     if distance2 < nearest.0 {
                         nearest = (distance2, index, t);
                     }
@@ -76,58 +97,96 @@ impl Chain {
         self.nearest(point).0
     }
 
-    /// Returns what light is multiplied with at a point of a piece.
-    fn intensity(&self, index: usize, t: f64) -> f64 {
-        let (piece, ..) = &self.pieces[index];
-        let (begin, end) = (self.begins[index], self.begins[index + 1]);
-        let of_piece = length(piece, t) / length(piece, 1.0);
-        let share = begin + (end - begin) * if of_piece.is_nan() { 0.0 } else { of_piece };
-        let mut pairs = self.knots.windows(2);
-        let around = pairs.find(|pair| share <= pair[1].0).unwrap_or(&self.knots[self.knots.len() - 2..]);
-        let [(s0, v0), (s1, v1)] = [around[0], around[1]];
-        v0 + (v1 - v0) * (share - s0) / (s1 - s0)
+    /// Returns what light is multiplied with at a point of a piece, and how thick the core is there.
+    pub(super) fn lit(&self, index: usize, t: f64) -> (f64, f64) {
+        if self.is_even(index) {
+            return (1.0, 0.0);
+        }
+        let part = &self.parts[index];
+        let run = &self.runs[part.run];
+        let [begin, end] = part.shares;
+        let of_piece = part.piece.length(t) / part.length;
+        let own = begin + (end - begin) * of_piece;
+        // Not a number of a core that is one point.
+        let own = if own.is_nan() { 0.0 } else { own };
+        let value = series_at(&self.values, run.share(own), 1.0);
+        (run.fade(own) * value, series_at(&self.radii, run.share(own), 0.0))
     }
 }
 
-impl Field for Chain {
+impl Nearest {
+    /// Returns whether light and thickness are the same all along a piece.
+    pub(super) fn is_even(&self, index: usize) -> bool {
+        let run = &self.runs[self.parts[index].run];
+        self.values.is_empty() && self.radii.is_empty() && run.fade == [1.0; 2]
+    }
+
+    /// Returns where on a piece, as t, knots of its light lie, in the order of the knots.
+    pub(super) fn knots(&self, index: usize) -> Vec<f64> {
+        let part = &self.parts[index];
+        let run = &self.runs[part.run];
+        let [begin, end] = part.shares.map(|own| run.share(own));
+        let of_piece = |(share, _): &(f64, f64)| (share - begin) / (end - begin);
+        let inside = self.values.iter().map(of_piece).filter(|share| *share > 0.0 && *share < 1.0);
+        inside.map(|share| part.piece.t_at_length(share * part.length)).collect()
+    }
+
+    pub(super) fn for_each_stationary(&self, index: usize, point: DVec3, offer: &mut impl FnMut(f64)) {
+        for_each_stationary(&self.parts[index].piece, |v| v, point, offer);
+    }
+
+    /// Calls `add` with each parameter at which the ray passes a piece, or a plane through an end of one, and the point
+    /// of the piece.
+    pub(super) fn passes(&self, ray: &Ray, add: &mut dyn FnMut(f64, DVec3)) {
+        let direction = ray.span.normalize();
+        let flat = |v: DVec3| v - direction * v.dot(direction);
+        let mut offer = |s: f64, point: DVec3| {
+            if s.is_finite() {
+                add(s, point);
+            }
+        };
+        for Part { piece, .. } in self.parts.iter() {
+            for_each_stationary(piece, flat, ray.origin, &mut |t| {
+                offer(ray.nearest_to(piece.at(t)), piece.at(t));
+            });
+            for t in [0.0, 1.0] {
+                offer(crossing(ray, piece.at(t), piece.velocity(t)), piece.at(t));
+            }
+        }
+    }
+}
+
+impl Field for Nearest {
     fn sample(&self, point: DVec3) -> Sample {
         let (distance2, index, t) = self.nearest(point);
-        match self.knots.is_empty() {
-            true => even(distance2),
-            false => Sample {
-                distance2,
-                intensity: self.intensity(index, t),
-            },
+        Sample {
+            distance2,
+            intensity: self.lit(index, t).0,
         }
+    }
+
+    fn light(&self, point: DVec3, falloff: &Falloff, softening2: f64, floor2: f64) -> f64 {
+        let (distance2, index, t) = self.nearest(point);
+        let (value, radius) = self.lit(index, t);
+        let softened2 = (distance2 + softening2 + radius * radius).max(floor2);
+        value * falloff.field(distance2, softened2)
     }
 
     /// Adds where the ray passes a piece that is nearest there, and where it leaves the planes through the ends of one.
     fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>) {
-        let direction = ray.span.normalize();
-        let flat = |v: DVec3| v - direction * v.dot(direction);
-        let mut found = Vec::new();
-        for (piece, ..) in &self.pieces {
-            for_each_stationary(piece, flat, ray.origin, &mut |t| {
-                found.push((ray.nearest_to(piece.at(t)), piece.at(t)));
-            });
-            let [_, c1, c2, c3] = piece.0;
-            for (end, tangent) in [(0.0, c1), (1.0, c1 + 2.0 * c2 + 3.0 * c3)] {
-                found.push((crossing(ray, piece.at(end), tangent), piece.at(end)));
-            }
-        }
-        let is_nearest = |(s, point): &(f64, DVec3)| {
+        self.passes(ray, &mut |s, point| {
             let at = ray.at(s.clamp(0.0, 1.0));
-            s.is_finite() && point.distance_squared(at) <= self.distance2(at) * (1.0 + 1e-6) + 1e-24
-        };
-        found.retain(is_nearest);
-        breaks.extend(found.iter().map(|(s, _)| s));
+            if point.distance_squared(at) <= self.distance2(at) * (1.0 + 1e-6) + 1e-24 {
+                breaks.push(s);
+            }
+        });
     }
 }
 
 /// Calls `offer` with the ends of a piece, and where between them the distance from a point, seen along `flat`, is
 /// stationary.
 fn for_each_stationary(
-    piece: &PathPiece,
+    piece: &Piece,
     flat: impl Fn(DVec3) -> DVec3,
     point: DVec3,
     offer: &mut impl FnMut(f64),

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::added::sum_over_line;
 use super::{Field, Parts, Sample, Source, crossing, even, nearest_to_line};
 use crate::scene::{Falloff, Light, Profile, Ray, Segment};
 
@@ -63,24 +64,8 @@ impl Field for AddedLine {
         self.0.sample(point)
     }
 
-    /// Returns the integral of 1/r over the line: softening, and with it the floor, lies at right angles to all else.
     fn light(&self, point: DVec3, _: &Falloff, softening2: f64, floor2: f64) -> f64 {
-        let length = self.0.span.length();
-        if length == 0.0 {
-            return 0.0;
-        }
-        let direction = self.0.span / length;
-        let from_begin = point - self.0.from;
-        let (ahead, beside) = (from_begin.dot(direction), from_begin.cross(direction));
-        let distance = (beside.length_squared() + softening2 + floor2).sqrt();
-        let (begin, end) = (-ahead / distance, (length - ahead) / distance);
-        if begin * end > 0.0 && begin.abs().min(end.abs()) > 0.1 {
-            // Both on one side: their difference would cancel.
-            let (near, far) = (begin.abs().min(end.abs()), begin.abs().max(end.abs()));
-            let growth = (far - near) * (1.0 + (far + near) / (far.hypot(1.0) + near.hypot(1.0)));
-            return (growth / (near + near.hypot(1.0))).ln_1p();
-        }
-        end.asinh() - begin.asinh()
+        sum_over_line(self.0.from, self.0.span, point, softening2 + floor2)
     }
 
     fn breaks(&self, ray: &Ray, breaks: &mut Vec<f64>) {

@@ -3,6 +3,7 @@
 mod depth;
 mod display;
 mod groups;
+mod integration;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
@@ -18,15 +19,15 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::integration::{check_divisions, check_tolerance};
 use super::kinds::for_each_kind;
-use super::values::Fault;
 use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
 use depth::DepthTable;
 use display::DisplayTable;
 use groups::{GroupTable, Groups};
+use integration::IntegrationTable;
+pub use integration::MethodKeys;
 use scan::UNIT_COUNT;
 
 /// Changes a scene between its reading and its check.
@@ -128,118 +129,6 @@ for_each_kind!(define_scene_file);
 
 fn is_empty<T>(list: &List<T>) -> bool {
     list.len() == 0
-}
-
-/// `[integration]`: keys of both methods may stand there, whichever is chosen.
-#[derive(Deserialize, Serialize)]
-#[serde(default, deny_unknown_fields)]
-struct IntegrationTable {
-    method: MethodName,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    divisions: Option<u32>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    tolerance: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    sampling: Option<Sampling>,
-    measure: Measure,
-    softening: f64,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum MethodName {
-    Simpson,
-    Exact,
-}
-
-impl Default for IntegrationTable {
-    fn default() -> Self {
-        let Integration {
-            measure, softening, ..
-        } = Integration::default();
-        Self {
-            method: MethodName::Exact,
-            divisions: None,
-            tolerance: None,
-            sampling: None,
-            measure,
-            softening,
-        }
-    }
-}
-
-/// What `[integration]` of a file says of either method, whichever it chooses; the default where it says nothing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct MethodKeys {
-    /// Simpson: number of equal divisions.
-    pub divisions: u32,
-    /// Exact: relative error aimed at.
-    pub tolerance: f64,
-    /// Exact: where integrals are taken.
-    pub sampling: Sampling,
-}
-
-impl IntegrationTable {
-    fn keys(&self) -> MethodKeys {
-        MethodKeys {
-            divisions: self.divisions.unwrap_or(200),
-            tolerance: self.tolerance.unwrap_or(1e-3),
-            sampling: self.sampling.unwrap_or_default(),
-        }
-    }
-
-    fn integration(&self) -> Integration {
-        let keys = self.keys();
-        Integration {
-            method: match self.method {
-                MethodName::Simpson => Method::Simpson {
-                    divisions: keys.divisions,
-                },
-                MethodName::Exact => Method::Exact {
-                    tolerance: keys.tolerance,
-                    sampling: keys.sampling,
-                },
-            },
-            measure: self.measure,
-            softening: self.softening,
-        }
-    }
-
-    fn of(integration: &Integration) -> Self {
-        let keep = Self {
-            measure: integration.measure,
-            softening: integration.softening,
-            ..Self::default()
-        };
-        match integration.method {
-            Method::Simpson { divisions } => Self {
-                method: MethodName::Simpson,
-                divisions: Some(divisions),
-                ..keep
-            },
-            Method::Exact {
-                tolerance,
-                sampling,
-            } => Self {
-                method: MethodName::Exact,
-                tolerance: Some(tolerance),
-                sampling: Some(sampling),
-                ..keep
-            },
-        }
-    }
-
-    /// Checks what the scene does not hold: the keys of the method that was not chosen.
-    fn check(&self) -> std::result::Result<(), Fault> {
-        let keys = self.keys();
-        check_divisions(keys.divisions)?;
-        if self.method == MethodName::Simpson && self.sampling == Some(Sampling::Tiles) {
-            let message = "tiles are for the method \"exact\"; Simpson's rule takes every pixel";
-            return Err(Fault::new("sampling", message));
-        }
-        check_tolerance(keys.tolerance)
-    }
 }
 
 impl SceneFile {

@@ -15,7 +15,7 @@ pub use placement::{Repeat, Rotation};
 use super::kinds::{KIND_COUNT, for_each_kind};
 use super::source::*;
 use super::values::{Checked, direction, finite, positive, vector};
-use super::{List, Measure, Scene};
+use super::{List, Measure, Reduction, Scene};
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
 
@@ -80,7 +80,7 @@ macro_rules! define_group {
 
             /// Checks its own sources as they are written, but for how bright they are.
             fn check_sources(&self, measure: Measure, path: &str) -> std::result::Result<(), SceneError> {
-                let brightness = Brightness { most: 0.0, least_distance: 1.0, measure };
+                let brightness = Brightness { most: 0.0, least_distance: 1.0, measure, reduction: Reduction::Sum };
                 $(for (index, source) in self.$list.iter().enumerate() {
                     source.check(&brightness).map_err(|fault| {
                         fault.of(&format!("{path}.{}[{index}]", stringify!($kind)))

@@ -105,6 +105,21 @@ impl SourceKind for Beam {
         }
     }
 
+    fn uneven(&self) -> Option<&'static str> {
+        match self.end {
+            BeamEnd::Taper(_) => Some("taper_length"),
+            BeamEnd::Cap(Some(_)) => Some("cap_coefficient"),
+            BeamEnd::Cap(None) => (self.sphere_coefficient != 0.0).then_some("sphere_coefficient"),
+        }
+    }
+
+    fn evened(self) -> Self {
+        Self {
+            end: BeamEnd::Cap(None),
+            ..self
+        }
+    }
+
     fn specimen(place: DVec3, profile: Profile) -> Self {
         Self {
             tip: -place,

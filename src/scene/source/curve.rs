@@ -76,6 +76,10 @@ impl SourceKind for Curve {
         Core::Bezier(self.control_points)
     }
 
+    fn uneven(&self) -> Option<&'static str> {
+        self.intensity.is_some().then_some("intensity")
+    }
+
     fn specimen(place: DVec3, profile: Profile) -> Self {
         let points = [(-1.3, 0.1), (0.2, 1.4), (1.1, -0.6)];
         Self {

@@ -24,7 +24,7 @@ pub enum Profile {
     /// `erf(d / (sqrt(2) radius)) / d`: `1/d` smeared by a Gaussian of that standard deviation.
     Smeared,
     /// The sum of `1/d` over all points of the core, per unit of its length: light that adds up, without a joint where
-    /// cores meet. For a [`Segment`](super::Segment) alone.
+    /// cores meet. For a [`Segment`](super::Segment), a [`LightPath`](super::LightPath) and a [`Torus`](super::Torus).
     Convolution,
 }
 
@@ -47,9 +47,6 @@ pub struct Falloff {
     pub reach: Option<f64>,
 }
 
-/// Beyond so many radii a Gaussian is 0, as `cl/wave/source/profile.h` has it.
-const GAUSSIAN_END: f64 = 9.0;
-
 /// Steps of the sum across a core with a reach; an even number.
 const ACROSS: u32 = 200;
 
@@ -64,11 +61,9 @@ impl Falloff {
         }
     }
 
-    /// Returns the distance from which on there is no light on the devices.
-    pub(crate) fn end(&self) -> Option<f64> {
-        let last = (self.profile == Profile::Gaussian).then_some(GAUSSIAN_END * self.radius);
-        let ends = [self.reach, last].into_iter().flatten();
-        ends.reduce(f64::min)
+    /// Returns whether there is a distance from which on there is no light on the devices.
+    pub(crate) fn ends(&self) -> bool {
+        self.reach.is_some() || self.profile == Profile::Gaussian
     }
 
     /// Returns whether it has a sharper peak than 1 over the distance.
@@ -102,12 +97,19 @@ impl Falloff {
                 Profile::Gaussian => (2.0 * PI).sqrt() * radius,
             };
         };
-        // Simpson's rule over u, d = radius sinh u: what is steep at the core is even in u.
-        let step = (reach / radius).asinh() / f64::from(ACROSS);
+        self.sum_across(reach, |field| field)
+    }
+
+    /// Integrates what is summed of the field of coefficient 1 straight across a core with a radius, on both sides as
+    /// far as `end`, by length: Simpson's rule over u, d = radius sinh u, as what is steep at the core is even in u.
+    pub(crate) fn sum_across(&self, end: f64, summand: impl Fn(f64) -> f64) -> f64 {
+        let radius = self.radius;
+        let step = (end / radius).asinh() / f64::from(ACROSS);
         let light = |k: u32| {
             let u = f64::from(k) * step;
             let distance2 = (radius * u.sinh()).powi(2);
-            self.field(distance2, distance2 + radius * radius) * radius * u.cosh()
+            let field = self.field(distance2, distance2 + radius * radius);
+            summand(field) * radius * u.cosh()
         };
         let pairs =
             (0..ACROSS / 2).map(|k| light(2 * k) + 4.0 * light(2 * k + 1) + light(2 * k + 2));

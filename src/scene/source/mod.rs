@@ -4,10 +4,11 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
-use super::Measure;
+use super::chain::{LightAlong, LitChain};
 use super::group::Placement;
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
+use super::{Measure, Reduction};
 
 mod core;
 mod falloff;
@@ -18,7 +19,7 @@ pub(super) use core::Core;
 pub use falloff::{Falloff, Profile};
 pub use layer::Layer;
 use layer::read_layers;
-pub(crate) use shared::{HasLight, Shared};
+pub(crate) use shared::{CoreLight, HasLight, Shared};
 use shared::{source, source_struct};
 
 macro_rules! declare_kinds {
@@ -76,8 +77,28 @@ pub(crate) trait SourceKind: HasLight {
         self.core().ball()
     }
 
+    /// Returns the chain that it is drawn as where light changes along its core; `None`: it is drawn as it is.
+    fn as_chain(&self) -> Option<LitChain> {
+        None
+    }
+
     /// Makes a source of this kind at about `place`, for the self-test of kernels.
     fn specimen(place: DVec3, profile: Profile) -> Self;
+
+    /// Returns the key with which it has more than one light, or one that is not the same all along its core; layers
+    /// aside.
+    fn uneven(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Makes a specimen even ([`SourceKind::uneven`]), where it is not.
+    #[must_use]
+    fn evened(self) -> Self
+    where
+        Self: Sized,
+    {
+        self
+    }
 
     /// Gives a specimen a series over its core, where its kind has such.
     #[must_use]
@@ -104,10 +125,12 @@ pub(crate) struct Brightness {
     /// World units.
     pub least_distance: f64,
     pub measure: Measure,
+    pub reduction: Reduction,
 }
 
 impl Brightness {
-    /// Returns the greatest value that decay times field times measure can take.
+    /// Returns the greatest value that decay times field times measure can take, of squared fields where those are
+    /// integrated.
     pub(crate) fn of(&self, falloff: Falloff) -> f64 {
         let distance = self.least_distance.hypot(falloff.radius);
         let field = match falloff.profile {
@@ -118,7 +141,7 @@ impl Brightness {
             Profile::Smeared => 1.0 / falloff.radius,
             Profile::Convolution => MOST_ADDED_UP,
         };
-        self.most * field
+        self.most * self.reduction.summand(field)
     }
 
     /// Checks the light that the keys of a source, or of one of its layers, make; `strongest` gives the greatest
@@ -128,7 +151,7 @@ impl Brightness {
         let falloff = shared.falloff();
         if falloff.profile == Profile::Convolution {
             if !shared.adds_up {
-                let message = "adds up the light of a [[segment]]; other cores have none";
+                let message = "adds up the light of a [[segment]], [[path]] or [[torus]]; other cores have none";
                 return Err(Fault::new("profile", message));
             }
             falloff.check_convolution(shared.peak)?;
@@ -147,17 +170,34 @@ impl Brightness {
                 } else {
                     "coefficient"
                 },
-                format!(
-                    "next to the core the light comes to {brightest:.0e}, more than float32 holds"
-                ),
+                match self.reduction {
+                    Reduction::Sum => format!(
+                        "next to the core the light comes to {brightest:.0e}, more than float32 holds"
+                    ),
+                    Reduction::Rms => format!(
+                        "next to the core its square comes to {brightest:.0e}, more than float32 holds: give a radius"
+                    ),
+                },
             ));
         }
         Ok(())
     }
 }
 
+/// Calls `add` with the emission of all lights of a source along its core.
+fn emissions_along(lights: &[LightAlong], add: &mut dyn FnMut(DVec3)) {
+    for LightAlong { light, values, .. } in lights {
+        match values.is_empty() {
+            true => add(light.emission()),
+            false => values
+                .iter()
+                .for_each(|(_, value)| add(*value * light.emission())),
+        }
+    }
+}
+
 /// Returns the name of an item of a list in a file, such as `intensity[3]`.
-fn item(list: &str, index: usize) -> Cow<'static, str> {
+pub(super) fn item(list: &str, index: usize) -> Cow<'static, str> {
     format!("{list}[{index}]").into()
 }
 

@@ -3,32 +3,55 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Light, Placement, Profile, SourceKind, source, source_struct};
-use crate::scene::values::{Checked, read_vector, vector};
+use super::{Brightness, Core, HasLight, Light, Placement, Profile, SourceKind, emissions_along, source, source_struct};
+use crate::scene::chain::{Along, LitChain, Piece, Run};
+use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
 
 source_struct! {
     /// A finite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point between its
     /// ends. Ends that coincide make a point.
     #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
     #[serde(deny_unknown_fields)]
-    pub struct Segment {
+    pub struct Segment along {
         /// One end.
         #[serde(deserialize_with = "read_vector")]
         pub from: DVec3,
         /// The other end.
         #[serde(deserialize_with = "read_vector")]
         pub to: DVec3,
+        /// Over which lengths the light rises from 0 at either end, world units; 0: it does not, and the end glows as a
+        /// point does.
+        #[serde(default, skip_serializing_if = "is_even")]
+        pub taper_lengths: [f64; 2],
     }
+}
+
+fn is_even(lengths: &[f64; 2]) -> bool {
+    *lengths == [0.0; 2]
 }
 
 impl Segment {
     /// Makes a white line between two points.
     #[must_use]
     pub fn new(from: DVec3, to: DVec3) -> Self {
-        source!(Self {
+        source!(Self along {
             from,
             to,
+            taper_lengths: [0.0; 2],
         })
+    }
+
+    fn along(&self) -> Along<'_> {
+        let length = self.from.distance(self.to);
+        let share = |over: f64| if over > 0.0 { over / length } else { 0.0 };
+        Along {
+            tapers: self.taper_lengths.map(share),
+            ..self.along_keys()
+        }
+    }
+
+    fn whole(&self) -> Run {
+        Run::whole(vec![Piece::straight(self.from, self.to)])
     }
 }
 
@@ -36,17 +59,41 @@ impl SourceKind for Segment {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("from", self.from)?;
         vector("to", self.to)?;
-        let strongest = |light: &Light| light.coefficient.abs();
-        self.shared().adding_up().check(brightness, &strongest)
+        for length in self.taper_lengths {
+            finite("taper_lengths", length)?;
+            if length < 0.0 {
+                let message = format!("light rises over 0 or more from either end; found {length}");
+                return Err(Fault::new("taper_lengths", message));
+            }
+        }
+        let (along, shared) = (self.along(), self.shared().adding_up());
+        along.check(&shared, self.radius)?;
+        let strongest = |light: &Light| along.strongest() * light.coefficient.abs();
+        shared.check(brightness, &strongest)
+    }
+
+    fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+        emissions_along(&self.along().lights(&self.shared()), add);
     }
 
     fn move_core(&mut self, place: &Placement) {
         self.from = place.point(self.from);
         self.to = place.point(self.to);
+        self.taper_lengths = self.taper_lengths.map(|length| place.scale * length);
+        self.scale_along(place.scale);
     }
 
     fn core(&self) -> Core {
         Core::between(self.from, self.to)
+    }
+
+    fn uneven(&self) -> Option<&'static str> {
+        self.along().uneven()
+    }
+
+    fn as_chain(&self) -> Option<LitChain> {
+        let along = self.along();
+        (!along.is_even()).then(|| along.lit(self.whole(), None, &self.shared()))
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {

@@ -4,9 +4,69 @@ use glam::DVec3;
 
 use super::{Falloff, Layer, Light, Profile};
 
-/// Defines a source's struct: the fields that are its kind's own, then those that every kind has.
+/// Defines a source's struct: the fields that are its kind's own, then those that every kind has; with `along` also
+/// those of a core along which light may change.
 macro_rules! source_struct {
     (
+        $(#[$attribute:meta])*
+        $visibility:vis struct $Type:ident { $($fields:tt)* }
+    ) => {
+        $crate::scene::source::shared::source_struct! {
+            @thickest |source| source.radius;
+            $(#[$attribute])*
+            $visibility struct $Type { $($fields)* }
+        }
+    };
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis struct $Type:ident along { $($fields:tt)* }
+    ) => {
+        $crate::scene::source::shared::source_struct! {
+            @thickest |source| source.radii.iter().flatten().copied().fold(source.radius, f64::max);
+            $(#[$attribute])*
+            $visibility struct $Type {
+                $($fields)*
+                /// What the light is multiplied with along the core: values at equal steps of its length, linear
+                /// between, at least 2; `None`: 1 everywhere.
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub intensity: Option<Vec<f64>>,
+                /// The same for each of red, green and blue.
+                #[serde(
+                    default,
+                    skip_serializing_if = "Option::is_none",
+                    deserialize_with = "crate::scene::colors::read_some_colors"
+                )]
+                pub colors: Option<Vec<glam::DVec3>>,
+                /// How thick the core is along it, in the place of `radius`: values at equal steps of its length,
+                /// linear between, at least 2; world units. A `peak` is met at each of them.
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub radii: Option<Vec<f64>>,
+                /// Gaps that part the core.
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub dashes: Option<$crate::scene::Dashes>,
+            }
+        }
+
+        impl $Type {
+            /// Returns what its keys say of the change along its core.
+            fn along_keys(&self) -> $crate::scene::chain::Along<'_> {
+                $crate::scene::chain::Along {
+                    intensity: self.intensity.as_deref(),
+                    colors: self.colors.as_deref(),
+                    radii: self.radii.as_deref(),
+                    dashes: self.dashes,
+                    tapers: [0.0; 2],
+                }
+            }
+
+            /// Multiplies the lengths among them.
+            fn scale_along(&mut self, scale: f64) {
+                self.radii.iter_mut().flatten().for_each(|radius| *radius *= scale);
+            }
+        }
+    };
+    (
+        @thickest |$source:ident| $thickest:expr;
         $(#[$attribute:meta])*
         $visibility:vis struct $Type:ident { $($fields:tt)* }
     ) => {
@@ -47,11 +107,12 @@ macro_rules! source_struct {
 
         impl $crate::scene::source::HasLight for $Type {
             fn shared(&self) -> $crate::scene::source::Shared<'_> {
+                let $source = self;
                 $crate::scene::source::Shared {
                     coefficient: self.coefficient,
                     color: self.color,
                     profile: self.profile,
-                    radius: self.radius,
+                    radius: $thickest,
                     reach: self.reach,
                     peak: self.peak,
                     layers: &self.layers,
@@ -71,6 +132,15 @@ pub(super) use source_struct;
 
 /// Makes a source of its kind's own fields; those that every kind has are at their defaults, or like another's.
 macro_rules! source {
+    ($Type:ident along { $($fields:tt)* }) => {
+        $crate::scene::source::shared::source!($Type {
+            $($fields)*
+            intensity: None,
+            colors: None,
+            radii: None,
+            dashes: None,
+        })
+    };
     ($Type:ident { $($fields:tt)* }) => {
         $crate::scene::source::shared::source!($Type { $($fields)* } like $crate::scene::source::Shared::default())
     };
@@ -102,6 +172,16 @@ pub(crate) struct Shared<'a> {
     pub layers: &'a [Layer],
     /// Whether its core can be added up (`Profile::Convolution`).
     pub adds_up: bool,
+}
+
+/// A light of a source's core.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CoreLight {
+    pub light: Light,
+    /// Whether its radius is that of its layer alone.
+    pub has_own_radius: bool,
+    /// Whether its peak says how bright it is.
+    pub has_peak: bool,
 }
 
 impl Default for Shared<'_> {
@@ -173,6 +253,12 @@ impl<'a> Shared<'a> {
         self.peak.is_some() || self.layers.iter().any(|layer| layer.peak.is_some())
     }
 
+    /// Returns whether some light is that of all points of the core, added up.
+    pub(crate) fn adds_any_up(self) -> bool {
+        self.lights()
+            .any(|light| light.falloff.profile == Profile::Convolution)
+    }
+
     /// Returns how many lights they make.
     pub(crate) fn light_count(&self) -> usize {
         self.layers.len().max(1)
@@ -180,10 +266,25 @@ impl<'a> Shared<'a> {
 
     /// Returns all lights that they make: one, or that of each layer.
     pub(crate) fn lights(self) -> impl Iterator<Item = Light> + 'a {
-        let own = self.layers.is_empty().then(|| self.light());
-        let layers = self.layers.iter();
-        own.into_iter()
-            .chain(layers.map(move |layer| layer.over(&self).light()))
+        self.core_lights().map(|it| it.light)
+    }
+
+    /// Returns the same, each with what of it is not the source's.
+    pub(crate) fn core_lights(self) -> impl Iterator<Item = CoreLight> + 'a {
+        let own = self.layers.is_empty().then(|| CoreLight {
+            light: self.light(),
+            has_own_radius: false,
+            has_peak: self.peak.is_some(),
+        });
+        let of_layer = move |layer: &Layer| {
+            let shared = layer.over(&self);
+            CoreLight {
+                light: shared.light(),
+                has_own_radius: layer.radius.is_some(),
+                has_peak: shared.peak.is_some(),
+            }
+        };
+        own.into_iter().chain(self.layers.iter().map(of_layer))
     }
 }
 

@@ -3,15 +3,16 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, plus_z, source, source_struct};
-use crate::scene::values::{Checked, direction, positive, read_vector, vector};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, emissions_along, plus_z, source, source_struct};
+use crate::scene::chain::{LitChain, Piece, Run};
+use crate::scene::values::{Checked, Fault, direction, finite, positive, read_some_vector, read_vector, vector};
 
 source_struct! {
     /// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle
     /// (2015, eq. 7).
     #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
     #[serde(deny_unknown_fields)]
-    pub struct Torus {
+    pub struct Torus along {
         /// Middle of the ring.
         #[serde(default, deserialize_with = "read_vector")]
         pub center: DVec3,
@@ -20,6 +21,18 @@ source_struct! {
         pub axis: DVec3,
         /// Radius of the circle, positive.
         pub major_radius: f64,
+        /// The part of the ring that there is, from one angle to another, degrees, by at most a full turn; series go
+        /// from the first to the second. `None`: all of it, from 0 to 360.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub sweep: Option<[f64; 2]>,
+        /// Where the angle 0 is: as seen from the centre, what of this is at right angles to the axis. Angles grow
+        /// counterclockwise where the axis points at the viewer. `None`: x of the world, or y where the axis is x.
+        #[serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "read_some_vector"
+        )]
+        pub start: Option<DVec3>,
     }
 }
 
@@ -27,34 +40,109 @@ impl Torus {
     /// Makes a white ring around the origin, in the plane z = 0.
     #[must_use]
     pub fn new(major_radius: f64) -> Self {
-        source!(Self {
+        source!(Self along {
             center: DVec3::ZERO,
             axis: plus_z(),
             major_radius,
+            sweep: None,
+            start: None,
         })
     }
+
+    /// Returns the direction of the angle 0, of length 1.
+    fn start(&self) -> DVec3 {
+        let axis = self.axis.normalize();
+        let across = |v: DVec3| v - v.dot(axis) * axis;
+        let of_world = match across(DVec3::X).length() > LEAST_ACROSS {
+            true => DVec3::X,
+            false => DVec3::Y,
+        };
+        across(self.start.unwrap_or(of_world)).normalize()
+    }
+
+    /// Returns its whole core, of which dashes may be left.
+    fn whole(&self) -> Run {
+        let x = self.major_radius * self.start();
+        let y = self.axis.normalize().cross(x);
+        let angles = self.sweep.unwrap_or([0.0, 360.0]).map(f64::to_radians);
+        Run::whole(Piece::circle(self.center, x, y, angles))
+    }
+
+    fn is_even(&self) -> bool {
+        self.sweep.is_none() && self.along_keys().is_even()
+    }
+
+    fn check_angles(&self) -> Checked {
+        if let Some(start) = self.start {
+            direction("start", start)?;
+            let across = start.normalize().cross(self.axis.normalize()).length();
+            if across < LEAST_ACROSS {
+                let message = "lies along the axis: give a direction across it";
+                return Err(Fault::new("start", message));
+            }
+        }
+        let Some([from, to]) = self.sweep else {
+            return Ok(());
+        };
+        finite("sweep", from)?;
+        finite("sweep", to)?;
+        match to - from {
+            sweep if sweep > 0.0 && sweep <= 360.0 => Ok(()),
+            sweep => Err(Fault::new(
+                "sweep",
+                format!("goes from one angle to a greater one, by at most 360 degrees; found {sweep}"),
+            )),
+        }
+    }
 }
+
+/// The sine of the least angle between the axis of a ring and where its angles begin.
+const LEAST_ACROSS: f64 = 1e-3;
 
 impl SourceKind for Torus {
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("center", self.center)?;
         direction("axis", self.axis)?;
         positive("major_radius", self.major_radius)?;
-        self.shared().check(brightness, &|light| light.coefficient.abs())
+        self.check_angles()?;
+        let (along, shared) = (self.along_keys(), self.shared().adding_up());
+        along.check(&shared, self.radius)?;
+        shared.check(brightness, &|light| along.strongest() * light.coefficient.abs())
+    }
+
+    fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+        emissions_along(&self.along_keys().lights(&self.shared()), add);
     }
 
     fn move_core(&mut self, place: &Placement) {
+        if !self.is_even() {
+            self.start = Some(place.direction(self.start()));
+        }
         self.center = place.point(self.center);
         self.axis = place.direction(self.axis);
         self.major_radius *= place.scale;
+        self.scale_along(place.scale);
     }
 
     fn core(&self) -> Core {
+        if self.sweep.is_some() {
+            let chain = self.along_keys().chain(self.whole(), None);
+            return Core::Chain(chain.rough_corners());
+        }
         Core::Circle {
             center: self.center,
             axis: self.axis.normalize(),
             radius: self.major_radius,
         }
+    }
+
+    fn uneven(&self) -> Option<&'static str> {
+        self.along_keys().uneven()
+    }
+
+    fn as_chain(&self) -> Option<LitChain> {
+        let is_ring = self.is_even() && !self.shared().adds_any_up();
+        (!is_ring).then(|| self.along_keys().lit(self.whole(), None, &self.shared()))
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {

@@ -25,7 +25,7 @@ device_struct! {
 
 device_struct! {
     /// What is integrated along the rays, and how.
-    Integrand [32] {
+    Integrand [36] {
         softening2: f32 = 0,
         decay_strength: f32 = 4,
         decay_beta: f32 = 8,
@@ -34,6 +34,7 @@ device_struct! {
         kinked_threshold: f32 = 20,
         node_count: u32 = 24,
         absorption: f32 = 28,
+        seed: u32 = 32,
     }
 }
 

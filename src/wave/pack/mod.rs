@@ -14,7 +14,7 @@ pub use view::{integrand, ray, view};
 use crate::opencl::device_struct;
 use crate::scene::kinds::{KIND_COUNT, for_each_kind};
 use crate::scene::{
-    self, Falloff, HasLight, Light, Measure, Profile, Scene, SourceKind, SourcesStamp,
+    self, Falloff, HasLight, Light, Profile, Reduction, Scene, SourceKind, SourcesStamp,
 };
 
 /// Where the float32 coordinates begin, how far the rays go from there, and what every emission is multiplied with.
@@ -30,21 +30,20 @@ pub struct Anchor {
     pub pixel: f64,
     /// Relative error aimed at.
     pub tolerance: f64,
+    /// What a pixel has of integrals.
+    pub reduction: Reduction,
 }
 
 impl Anchor {
     /// Makes the anchor at `origin`, for rays that stay within `reach` of it and are `ray_length` long.
     pub fn new(scene: &Scene, origin: DVec3, reach: f64, ray_length: f64) -> Self {
-        let measure = match scene.integration.measure {
-            Measure::Length => ray_length,
-            _ => 1.0,
-        };
         Self {
             origin,
             reach,
-            measure: measure * even_decay(scene),
+            measure: scene.integration.scale(ray_length) * even_decay(scene),
             pixel: pixel(scene),
             tolerance: scene.integration.method.tolerance(),
+            reduction: scene.integration.reduction,
         }
     }
 
@@ -52,15 +51,33 @@ impl Anchor {
         fine(point - self.origin)
     }
 
+    /// Returns a light as it is packed: where a root is taken, its coefficient stays outside in the colour, and a field
+    /// whose square has a closed form is that square.
+    fn reduced(&self, light: Light) -> Light {
+        let mut falloff = light.falloff;
+        if self.reduction == Reduction::Sum {
+            return light;
+        }
+        if has_closed_square(falloff) {
+            falloff.profile = Profile::InverseSquare;
+        }
+        Light {
+            coefficient: 1.0,
+            color: light.emission(),
+            falloff,
+        }
+    }
+
     fn emission(&self, coefficient: f64, color: DVec3) -> [f32; 4] {
         vector(color * (coefficient * self.measure))
     }
 }
 
-/// Returns the decay of a scene where it is the same everywhere, else 1.
+/// Returns what a light has of the decay where that is the same everywhere, else 1.
 pub fn even_decay(scene: &Scene) -> f64 {
     let even = scene.decay.filter(|decay| decay.power == 0);
-    even.map_or(1.0, |decay| decay.alpha)
+    let decay = even.map_or(1.0, |decay| decay.alpha);
+    scene.integration.reduction.of(decay)
 }
 
 /// Returns how large a pixel is, as a share of the distance from the eye.
@@ -91,21 +108,16 @@ trait Pack {
     fn pack(&self, light: &Light, anchor: &Anchor, rows: &mut Rows) -> Self::Device;
 }
 
-/// The same for kinds whose light may need several entries of the device's list.
+/// The same for all lights of a source.
 trait PackInto<Device> {
-    /// Packs the source with one of its lights.
-    fn pack_into(&self, list: &mut Vec<Device>, light: &Light, anchor: &Anchor, rows: &mut Rows);
+    /// Packs the source with all of its lights; nothing of a kind that is always drawn as a chain.
+    fn pack_into(&self, _: &mut Vec<Device>, _: &Anchor, _: &mut Rows) {}
 }
 
-impl<Source: Pack> PackInto<Source::Device> for Source {
-    fn pack_into(
-        &self,
-        list: &mut Vec<Source::Device>,
-        light: &Light,
-        anchor: &Anchor,
-        rows: &mut Rows,
-    ) {
-        list.push(self.pack(light, anchor, rows));
+impl<Source: Pack + HasLight> PackInto<Source::Device> for Source {
+    fn pack_into(&self, list: &mut Vec<Source::Device>, anchor: &Anchor, rows: &mut Rows) {
+        let lights = self.lights().map(|light| anchor.reduced(light));
+        list.extend(lights.map(|light| self.pack(&light, anchor, rows)));
     }
 }
 
@@ -134,25 +146,39 @@ macro_rules! define_sources {
                 let rows = &mut self.rows;
                 rows.list.clear();
                 rows.has_series = false;
-                let has_ends = scene.any_falloff(|it| it.end().is_some());
-                let mut balls = Vec::new();
-                $(
-                    self.$list.clear();
-                    for source in scene.$list.iter() {
-                        let core = if has_ends { source.ball() } else { None };
-                        for light in source.lights() {
-                            let before = self.$list.len();
-                            source.pack_into(&mut self.$list, &light, anchor, rows);
-                            if has_ends {
-                                let ball = ball::ball(core, &light.falloff, anchor);
-                                balls.resize(balls.len() + self.$list.len() - before, ball);
-                            }
-                        }
+                rows.first_balls = None;
+                $(self.$list.clear();)*
+                let has_ends = scene.any_falloff(|it| it.ends());
+                let mut balls: [Vec<Row>; KIND_COUNT] = Default::default();
+                $(for source in &scene.$list {
+                    let rows = &mut self.rows;
+                    match source.as_chain() {
+                        Some(chain) => path::pack_chain(&chain, &mut self.paths, anchor, rows),
+                        None => source.pack_into(&mut self.$list, anchor, rows),
                     }
-                )*
-                let first_ball = self.rows.list.len();
-                self.rows.first_balls = has_ends.then(|| ball::first_balls(first_ball, self.counts()));
-                self.rows.list.append(&mut balls);
+                    if has_ends {
+                        self.add_balls(source.ball(), anchor, &mut balls);
+                    }
+                })*
+                if has_ends {
+                    let first = self.rows.list.len();
+                    self.rows.first_balls = Some(ball::first_balls(first, self.counts()));
+                    self.rows.list.extend(balls.iter().flatten());
+                }
+            }
+
+            /// Adds a ball for every entry that has none yet, around a core that lies in a ball.
+            fn add_balls(
+                &self,
+                core: Option<(DVec3, f64)>,
+                anchor: &Anchor,
+                balls: &mut [Vec<Row>; KIND_COUNT],
+            ) {
+                let mut of_kinds = balls.iter_mut();
+                $(if let Some(balls) = of_kinds.next() {
+                    let new = self.$list[balls.len()..].iter();
+                    balls.extend(new.map(|it| ball::ball(core, &it.falloff, anchor)));
+                })*
             }
 
             /// Returns how many there are of each kind, in the order of the table.
@@ -210,6 +236,13 @@ pub struct SourceFacts {
     pub has_sharp_peaks: bool,
     /// Whether some may cancel others.
     pub has_both_signs: bool,
+    /// Whether the square of every field has a closed form.
+    pub has_closed_squares: bool,
+}
+
+/// Returns whether the square of a field has a closed form.
+fn has_closed_square(falloff: Falloff) -> bool {
+    falloff.profile == Profile::Inverse && falloff.reach.is_none()
 }
 
 impl SourceFacts {
@@ -224,6 +257,7 @@ impl SourceFacts {
                 has_convolutions: scene.any_falloff(|it| it.profile == Profile::Convolution),
                 has_sharp_peaks: scene.any_falloff(|it| it.is_sharp()),
                 has_both_signs: scene.has_light_of_both_signs(),
+                has_closed_squares: !scene.any_falloff(|it| !has_closed_square(it)),
             };
         }
     }

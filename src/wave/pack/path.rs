@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::layout::Falloff;
-use super::{Anchor, PackInto, Row, Rows, device_struct, falloff, fine, scene};
-use crate::scene::{Light, LightAlong, PathLevel, PathPiece};
+use super::{Anchor, PackInto, Row, Rows, device_struct, falloff, fine, scene, vector};
+use crate::scene::chain::{Corner, Level, LightAlong, LitChain, Piece, Run, series_at};
 
 device_struct! {
     /// A chain of light.
@@ -12,8 +12,8 @@ device_struct! {
         emission: [f32; 4] = 0,
         row: u32 = 16,
         level_count: u32 = 20,
-        padding_0: u32 = 24,
-        padding_1: u32 = 28,
+        is_even: u32 = 24,
+        most_bend: f32 = 28,
         falloff: Falloff = 32,
     }
 }
@@ -26,7 +26,13 @@ const MOST_GROUPS: usize = 256;
 const OF_DISTANCE: f64 = 0.3;
 
 /// The same where light changes along the core, and jumps with the nearest part.
-const OF_DISTANCE_WHERE_LIGHT_JUMPS: f64 = 0.01;
+const OF_DISTANCE_WHERE_LIGHT_JUMPS: f64 = 0.05;
+
+/// There float32 loses more by shorter pieces than a tolerance below this gains.
+const LEAST_TOLERANCE_WHERE_LIGHT_JUMPS: f64 = 1e-4;
+
+/// How far light may be off a straight line in the middle of a stretch, times the tolerance.
+const OF_LIGHT: f64 = 1.0;
 
 /// How far they may be off in pixels, times the tolerance; and at most.
 const OF_PIXEL: f64 = 5.0;
@@ -39,99 +45,175 @@ const LEAST_OF_SIZE: f64 = 1e-8;
 /// The share by which float32 may make a ball too small.
 const BALL_MARGIN: f64 = 1e-5;
 
-impl PackInto<LightPath> for scene::LightPath {
-    fn pack_into(
-        &self,
-        list: &mut Vec<LightPath>,
-        light: &Light,
-        anchor: &Anchor,
-        rows: &mut Rows,
-    ) {
-        let levels = self.levels(|piece| flatness(piece, anchor));
-        let along = self.along(light);
-        list.extend(along.iter().map(|along| pack_levels(&levels, along, anchor, rows)));
-    }
+/// Always a chain.
+impl PackInto<LightPath> for scene::LightPath {}
+
+/// Packs a chain with each of its lights.
+pub(crate) fn pack_chain(lit: &LitChain, list: &mut Vec<LightPath>, anchor: &Anchor, rows: &mut Rows) {
+    let most = match lit.is_even() {
+        true => f64::INFINITY,
+        false => off_where_light_jumps(anchor) * lit.chain.size(),
+    };
+    let levels = lit.chain.levels(|piece| flatness(piece, anchor).min(most));
+    let pack = |along| pack_levels(&lit.chain.runs, &levels, along, anchor, rows);
+    list.extend(lit.lights.iter().map(pack));
+}
+
+/// Returns how far straight pieces may be off, as a share of the distance.
+fn off_where_light_jumps(anchor: &Anchor) -> f64 {
+    OF_DISTANCE_WHERE_LIGHT_JUMPS * anchor.tolerance.max(LEAST_TOLERANCE_WHERE_LIGHT_JUMPS)
 }
 
 fn pack_levels(
-    levels: &[PathLevel],
-    (light, knots): &LightAlong,
+    runs: &[Run],
+    levels: &[Level],
+    along: &LightAlong,
     anchor: &Anchor,
     rows: &mut Rows,
 ) -> LightPath {
-    let of_distance = match knots.is_empty() {
-        true => OF_DISTANCE,
-        false => OF_DISTANCE_WHERE_LIGHT_JUMPS,
+    let has_fades = runs.iter().any(|run| run.fade != [1.0; 2]);
+    let is_even = along.values.is_empty() && along.radii.is_empty() && !has_fades;
+    let of_distance = match is_even {
+        true => OF_DISTANCE * anchor.tolerance,
+        false => off_where_light_jumps(anchor),
     };
     let row = rows.list.len();
-    rows.has_series |= !knots.is_empty();
+    rows.has_series |= !is_even;
     rows.list.resize(row + 2 * levels.len(), [0.0; 4]);
     for (k, level) in levels.iter().enumerate() {
         let first = rows.list.len();
-        let corners = lit_corners(&level.corners, knots);
+        let lit = runs.iter().zip(&level.runs);
+        let corners: Vec<LitCorner> = lit
+            .flat_map(|(run, corners)| lit_corners(run, corners, along))
+            .collect();
         let count = corners.len();
         let group_size = count.div_ceil(MOST_GROUPS).max(LEAST_GROUP);
         push_level(&corners, group_size, anchor, rows);
+        if !is_even {
+            push_tangents(&corners, rows);
+        }
         let sizes = [count, count.div_ceil(group_size), group_size, first];
         rows.list[row + 2 * k] = sizes.map(|size| f32::from_bits(size as u32));
-        let from = level.off / (of_distance * anchor.tolerance);
+        let from = level.off / of_distance;
         rows.list[row + 2 * k + 1] = [(from * from) as f32, level.off as f32, 0.0, 0.0];
     }
+    let light = anchor.reduced(along.light);
     LightPath {
         emission: anchor.emission(light.coefficient, light.color),
         row: row as u32,
         level_count: levels.len() as u32,
-        padding_0: 0,
-        padding_1: 0,
+        is_even: u32::from(is_even),
+        most_bend: (OF_LIGHT * anchor.tolerance) as f32,
         falloff: falloff(light.falloff),
     }
 }
 
-/// Gives every corner what the light is multiplied with there, and makes a corner of every knot.
-fn lit_corners(corners: &[DVec3], knots: &[(f64, f64)]) -> Vec<(DVec3, f64)> {
-    if knots.is_empty() {
-        return corners.iter().map(|corner| (*corner, 1.0)).collect();
-    }
-    let lengths = corners.windows(2).map(|pair| pair[0].distance(pair[1]));
-    let whole: f64 = lengths.sum();
-    let value = |share: f64| {
-        let after = knots.partition_point(|(s, _)| *s <= share).clamp(1, knots.len() - 1);
-        let ((s0, v0), (s1, v1)) = (knots[after - 1], knots[after]);
-        v0 + (v1 - v0) * ((share - s0) / (s1 - s0)).clamp(0.0, 1.0)
-    };
-    let mut lit = vec![(corners[0], value(0.0))];
-    let mut share = 0.0;
-    for pair in corners.windows(2) {
-        let next = share + pair[0].distance(pair[1]) / whole;
-        let between = knots.iter().filter(|(s, _)| *s > share + 1e-9 && *s < next - 1e-9);
-        lit.extend(between.map(|(s, v)| (pair[0].lerp(pair[1], (s - share) / (next - share)), *v)));
-        lit.push((pair[1], value(next)));
-        share = next;
-    }
-    lit
+/// A corner, with what light is multiplied with there and how thick the core is.
+#[derive(Debug, Clone, Copy)]
+struct LitCorner {
+    corner: Corner,
+    value: f64,
+    radius: f64,
+    is_first: bool,
+    is_last: bool,
 }
 
-/// Packs a chain of straight lines.
-fn push_level(corners: &[(DVec3, f64)], group_size: usize, anchor: &Anchor, rows: &mut Rows) {
+/// Knots this close to a corner, in shares of a run, are that corner.
+const LEAST_STEP: f64 = 1e-9;
+
+/// Gives every corner of a run what light and thickness are there, and makes a corner of every knot of theirs.
+fn lit_corners(run: &Run, corners: &[Corner], along: &LightAlong) -> Vec<LitCorner> {
+    let lit = |corner: Corner, own: f64| {
+        let share = run.share(own);
+        LitCorner {
+            corner,
+            value: run.fade(own) * series_at(&along.values, share, 1.0),
+            radius: series_at(&along.radii, share, 0.0),
+            is_first: false,
+            is_last: false,
+        }
+    };
+    let [begin, end] = run.shares;
+    let knots = along.values.iter().chain(&along.radii).map(|(share, _)| *share);
+    let mut knots: Vec<f64> = knots.map(|share| (share - begin) / (end - begin)).collect();
+    knots.sort_by(f64::total_cmp);
+    let length = |pair: &[Corner]| pair[0].at.distance(pair[1].at);
+    let whole: f64 = corners.windows(2).map(length).sum();
+    let mut found = vec![lit(corners[0], 0.0)];
+    let mut own = 0.0;
+    for pair in corners.windows(2) {
+        let next = own + length(pair) / whole;
+        let mut last = own;
+        for &knot in &knots {
+            if knot > last + LEAST_STEP && knot < next - LEAST_STEP {
+                found.push(lit(between(pair, (knot - own) / (next - own)), knot));
+                last = knot;
+            }
+        }
+        found.push(lit(pair[1], next));
+        own = next;
+    }
+    if let [first, ..] = &mut found[..] {
+        first.is_first = true;
+    }
+    if let [.., last] = &mut found[..] {
+        last.is_last = true;
+    }
+    found
+}
+
+/// Returns a point of a chord.
+fn between(pair: &[Corner], share: f64) -> Corner {
+    let along = pair[0].leaves.lerp(pair[1].arrives, share).normalize_or_zero();
+    Corner {
+        at: pair[0].at.lerp(pair[1].at, share),
+        arrives: along,
+        leaves: along,
+    }
+}
+
+/// Packs chains of straight lines.
+fn push_level(corners: &[LitCorner], group_size: usize, anchor: &Anchor, rows: &mut Rows) {
     // A piece belongs to the group in which it begins.
     for first in (0..corners.len()).step_by(group_size) {
         let end = (first + group_size + 1).min(corners.len());
         rows.list.push(ball(anchor, &corners[first..end]));
     }
-    for (k, (corner, value)) in corners.iter().enumerate() {
-        let to_next = corners.get(k + 1).map_or(DVec3::ZERO, |(next, _)| next - corner);
-        let position = anchor.position(*corner);
+    for (k, corner) in corners.iter().enumerate() {
+        let to_next = match (corner.is_last, corners.get(k + 1)) {
+            (false, Some(next)) => next.corner.at - corner.corner.at,
+            _ => DVec3::ZERO,
+        };
+        let position = anchor.position(corner.corner.at);
         let direction = fine(to_next.normalize_or_zero());
-        let [x, y, z, _] = position.value;
-        let [rest_x, rest_y, rest_z, _] = position.rest;
-        rows.list.push([x, y, z, to_next.length() as f32]);
-        rows.list.push([rest_x, rest_y, rest_z, *value as f32]);
-        rows.list.extend([direction.value, direction.rest]);
+        let with = |[x, y, z, _]: Row, last: f64| [x, y, z, last as f32];
+        rows.list.push(with(position.value, to_next.length()));
+        rows.list.push(with(position.rest, corner.value));
+        rows.list.push(with(direction.value, corner.radius));
+        rows.list.push(direction.rest);
+    }
+}
+
+/// The cosine of the greatest angle by which a smooth core turns at a corner.
+const LEAST_SMOOTH: f64 = 0.999;
+
+/// Packs where the core goes at every corner.
+fn push_tangents(corners: &[LitCorner], rows: &mut Rows) {
+    for it in corners {
+        let [x, y, z, _] = vector(it.corner.arrives);
+        rows.list.push(vector(it.corner.leaves));
+        let is_smooth = it.corner.arrives.dot(it.corner.leaves) > LEAST_SMOOTH;
+        let joint = match (it.is_first, is_smooth) {
+            (true, _) => 0.0,
+            (false, true) => 2.0,
+            (false, false) => 1.0,
+        };
+        rows.list.push([x, y, z, joint]);
     }
 }
 
 /// Returns how far chords may be off a piece.
-fn flatness(piece: &PathPiece, anchor: &Anchor) -> f64 {
+fn flatness(piece: &Piece, anchor: &Anchor) -> f64 {
     let (center, radius) = piece.ball();
     let pixel = anchor.pixel * (center.distance(anchor.origin) - radius).max(0.0);
     let off = match anchor.pixel {
@@ -142,8 +224,8 @@ fn flatness(piece: &PathPiece, anchor: &Anchor) -> f64 {
 }
 
 /// Packs a ball around points: its centre, and its radius.
-fn ball(anchor: &Anchor, corners: &[(DVec3, f64)]) -> Row {
-    let points: Vec<DVec3> = corners.iter().map(|(corner, _)| *corner).collect();
+fn ball(anchor: &Anchor, corners: &[LitCorner]) -> Row {
+    let points: Vec<DVec3> = corners.iter().map(|it| it.corner.at).collect();
     let (center, radius) = ball_of(&points);
     let position = anchor.position(center);
     let rounded = 1e-6 * center.distance(anchor.origin);
@@ -163,7 +245,7 @@ fn ball_of(points: &[DVec3]) -> (DVec3, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{HasLight, LightPath, PathShape};
+    use crate::scene::{LightPath, PathShape, SourceKind};
 
     #[test]
     fn balls_hold_the_pieces_of_their_groups_and_rows_lie_as_the_kernel_reads_them() {
@@ -179,12 +261,12 @@ mod tests {
             measure: 1.0,
             pixel: 1e-3,
             tolerance: 1e-2,
+            reduction: crate::scene::Reduction::Sum,
         };
         let mut rows = Rows::default();
         rows.list.push([7.0; 4]);
-        let light = path.lights().next().unwrap();
         let mut list = Vec::new();
-        path.pack_into(&mut list, &light, &anchor, &mut rows);
+        pack_chain(&path.as_chain().unwrap(), &mut list, &anchor, &mut rows);
         let packed = list[0];
         assert!(packed.level_count > 3);
         for level in 0..packed.level_count as usize {

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::layout::{Integrand, RayRecord, View};
 use super::{fine, rest};
 use crate::image::{DepthAlong, DepthImage};
-use crate::scene::{Decay, Ray, Scene, ViewPlane};
+use crate::scene::{Decay, Method, Ray, Scene, ViewPlane};
 use crate::wave::Rule;
 
 /// The share by which a depth must fall short of the projection plane to hide all of a ray for certain, in float32.
@@ -58,6 +58,10 @@ pub fn integrand(scene: &Scene, rule: &Rule, node_count: u32) -> Integrand {
         kinked_threshold: rule.kinked_threshold,
         node_count,
         absorption: (kappa * LOG2_E) as f32,
+        seed: match scene.integration.method {
+            Method::Jittered { seed, .. } => seed,
+            _ => 0,
+        },
     }
 }
 

@@ -83,7 +83,7 @@ INLINE path_approach path_closest_approach(const path_rows *const path, const Ra
             const float3v closest = fma3(span, to_line.s, start);
             to_line.distance2 = dot3(closest, closest);
             const floatv height = dot3(fma3(ray->span, to_line.s, origin), along);
-            to_line.distance2 = select(splat(1e36f), to_line.distance2, (height >= 0.0f) & (height <= corner[0].w));
+            to_line.distance2 = select(splat(1e36f), to_line.distance2, (height > 0.0f) & (height < corner[0].w));
             nearest = nearer_approach(nearest, to_line);
         }
     }

@@ -67,7 +67,11 @@ INLINE Parabola path_excess(const Parabola other, const Parabola nearest) {
 }
 
 // More than a ray can need: corners, and pieces between them, seen from both sides.
+#ifdef SERIES // and each in several steps
+#define MOST_PATH_STEPS(rows) (16u * (rows)->corner_count + 1024u)
+#else
 #define MOST_PATH_STEPS(rows) (4u * (rows)->corner_count + 16u)
+#endif
 
 // Between the planes through a piece's ends: from where to where.
 typedef struct {
@@ -90,9 +94,6 @@ typedef struct {
     float3v corner, corner_rest, along;
     Parabola distance2;
     floatv height, rise, length; // over the plane through its corner, along its line; and that line's length
-#ifdef SERIES
-    floatv light, growth; // what light is multiplied with at its corner, and how that grows along its line
-#endif
 } path_view;
 
 INLINE path_view path_view_of(const path_rows *const path, const Ray *const ray, const path_spot *const spot,
@@ -108,23 +109,8 @@ INLINE path_view path_view_of(const path_rows *const path, const Ray *const ray,
     view.distance2.a = select(length2, max(fma(-view.rise, view.rise, length2), 0.0f), place->is_line);
     view.distance2.b = select(approach, fma(-view.height, view.rise, approach), place->is_line);
     view.distance2.c = select(dot3(from_corner, from_corner), dot3(across, across), place->is_line);
-#ifdef SERIES
-    __global const float *const lights = (__global const float *)path->corners + 7;
-    const intv next = min(place->corner + 1, (intv)((int)path->corner_count - 1));
-    view.light = gather(lights, 16 * place->corner);
-    const floatv growth = (gather(lights, 16 * next) - view.light) * inverse(max(view.length, 1e-30f));
-    view.growth = select(splat(0.0f), growth, place->is_line);
-#endif
     return view;
 }
-
-#ifdef SERIES
-// Returns what light is multiplied with where the ray has moved on by x.
-INLINE floatv path_light(const path_view *const view, const floatv x) {
-    const floatv height = clamp(fma(view->rise, x, view->height), splat(0.0f), view->length);
-    return fma(view->growth, height, view->light);
-}
-#endif
 
 // Returns whether a ball can hold what is nearer than a part, as the ray moves on by up to `most`: the squared distance
 // to its centre, less that to the part, less twice radius times distance, is concave but for its sag.
@@ -247,7 +233,7 @@ INLINE void path_look_into(path_search *const search, const path_rows *const pat
             return;
         const path_corner next = path_see(search, path, ray, spot, k + 1u);
         const float half_length = 0.5005f * path->corners[4u * k].w;
-        if (any_lane(min(corner.least, next.least) < half_length * half_length))
+        if (half_length > 0.0f && any_lane(min(corner.least, next.least) < half_length * half_length))
             path_look_at_line(search, path, ray, &corner, k);
         corner = next;
     }

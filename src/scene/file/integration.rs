@@ -1,0 +1,149 @@
+//! `[integration]` of a scene file.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::integration::{check_divisions, check_strata, check_tolerance};
+use crate::scene::values::{Checked, Fault};
+use crate::scene::{Integration, Measure, Method, Reduction, Sampling};
+
+/// `[integration]`: keys of all methods may stand there, whichever is chosen.
+#[derive(Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct IntegrationTable {
+    method: MethodName,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    divisions: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seed: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sampling: Option<Sampling>,
+    measure: Measure,
+    #[serde(skip_serializing_if = "Reduction::is_sum")]
+    reduction: Reduction,
+    softening: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum MethodName {
+    Simpson,
+    Jittered,
+    Exact,
+}
+
+impl Default for IntegrationTable {
+    fn default() -> Self {
+        let Integration {
+            measure,
+            reduction,
+            softening,
+            ..
+        } = Integration::default();
+        Self {
+            method: MethodName::Exact,
+            divisions: None,
+            seed: None,
+            tolerance: None,
+            sampling: None,
+            measure,
+            reduction,
+            softening,
+        }
+    }
+}
+
+/// What `[integration]` of a file says of all methods, whichever it chooses; the default where it says nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct MethodKeys {
+    /// Simpson and jittered: number of equal divisions.
+    pub divisions: u32,
+    /// Jittered: chooses the random numbers.
+    pub seed: u32,
+    /// Exact: relative error aimed at.
+    pub tolerance: f64,
+    /// Exact: where integrals are taken.
+    pub sampling: Sampling,
+}
+
+impl IntegrationTable {
+    pub(super) fn keys(&self) -> MethodKeys {
+        MethodKeys {
+            divisions: self.divisions.unwrap_or(200),
+            seed: self.seed.unwrap_or(0),
+            tolerance: self.tolerance.unwrap_or(1e-3),
+            sampling: self.sampling.unwrap_or_default(),
+        }
+    }
+
+    pub(super) fn integration(&self) -> Integration {
+        let keys = self.keys();
+        Integration {
+            method: match self.method {
+                MethodName::Simpson => Method::Simpson {
+                    divisions: keys.divisions,
+                },
+                MethodName::Jittered => Method::Jittered {
+                    divisions: keys.divisions,
+                    seed: keys.seed,
+                },
+                MethodName::Exact => Method::Exact {
+                    tolerance: keys.tolerance,
+                    sampling: keys.sampling,
+                },
+            },
+            measure: self.measure,
+            reduction: self.reduction,
+            softening: self.softening,
+        }
+    }
+
+    pub(super) fn of(integration: &Integration) -> Self {
+        let keep = Self {
+            measure: integration.measure,
+            reduction: integration.reduction,
+            softening: integration.softening,
+            ..Self::default()
+        };
+        match integration.method {
+            Method::Simpson { divisions } => Self {
+                method: MethodName::Simpson,
+                divisions: Some(divisions),
+                ..keep
+            },
+            Method::Jittered { divisions, seed } => Self {
+                method: MethodName::Jittered,
+                divisions: Some(divisions),
+                seed: Some(seed),
+                ..keep
+            },
+            Method::Exact {
+                tolerance,
+                sampling,
+            } => Self {
+                method: MethodName::Exact,
+                tolerance: Some(tolerance),
+                sampling: Some(sampling),
+                ..keep
+            },
+        }
+    }
+
+    /// Checks what the scene does not hold: the keys of the method that was not chosen.
+    pub(super) fn check(&self) -> Checked {
+        let keys = self.keys();
+        match self.method {
+            MethodName::Jittered => check_strata(keys.divisions)?,
+            MethodName::Simpson | MethodName::Exact => check_divisions(keys.divisions)?,
+        }
+        if self.method != MethodName::Exact && self.sampling == Some(Sampling::Tiles) {
+            let name = self.integration().method.name();
+            let message =
+                format!("tiles are for the method \"exact\"; \"{name}\" takes every pixel");
+            return Err(Fault::new("sampling", message));
+        }
+        check_tolerance(keys.tolerance)
+    }
+}
