@@ -3,7 +3,9 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Light, Placement, Profile, Shared, SourceKind, emissions_along, source, source_struct};
+use super::{
+    Brightness, Core, HasLight, Light, Placement, Profile, Shared, SourceKind, emissions_along, source, source_struct,
+};
 use crate::scene::chain::{LitChain, Piece, Run};
 use crate::scene::values::{Fault, Checked, direction, finite, named, positive, read_vector, vector};
 

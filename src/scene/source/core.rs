@@ -138,7 +138,7 @@ impl Core {
 }
 
 /// Returns a ball around balls: centres and radii.
-pub(super) fn ball_around(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
+pub(crate) fn ball_around(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
     let centers = || balls.clone().map(|(center, _)| center);
     let low = centers().reduce(DVec3::min).unwrap_or_default();
     let high = centers().reduce(DVec3::max).unwrap_or_default();

@@ -15,7 +15,7 @@ mod falloff;
 mod layer;
 mod shared;
 
-pub(super) use core::Core;
+pub(super) use core::{Core, ball_around};
 pub use falloff::{Falloff, Profile};
 pub use layer::Layer;
 use layer::read_layers;
@@ -71,11 +71,6 @@ pub(crate) trait SourceKind: HasLight {
 
     /// Returns where its core is, of a source whose values are right.
     fn core(&self) -> Core;
-
-    /// Returns a ball that its core lies in, centre and radius; of a core without end there is none.
-    fn ball(&self) -> Option<(DVec3, f64)> {
-        self.core().ball()
-    }
 
     /// Returns the chain that it is drawn as where light changes along its core; `None`: it is drawn as it is.
     fn as_chain(&self) -> Option<LitChain> {

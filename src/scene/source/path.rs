@@ -3,7 +3,6 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::core::ball_around;
 use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, emissions_along, item, source, source_struct};
 use crate::scene::chain::{LitChain, Piece, Run};
 use crate::scene::values::{Checked, Fault, positive, read_vectors, vector};
@@ -162,10 +161,6 @@ impl SourceKind for LightPath {
     fn as_chain(&self) -> Option<LitChain> {
         let whole = Run::whole(self.pieces());
         Some(self.along_keys().lit(whole, self.flatness, &self.shared()))
-    }
-
-    fn ball(&self) -> Option<(DVec3, f64)> {
-        Some(ball_around(self.pieces().iter().map(Piece::ball)))
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {

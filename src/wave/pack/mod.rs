@@ -151,13 +151,14 @@ macro_rules! define_sources {
                 let has_ends = scene.any_falloff(|it| it.ends());
                 let mut balls: [Vec<Row>; KIND_COUNT] = Default::default();
                 $(for source in &scene.$list {
-                    let rows = &mut self.rows;
-                    match source.as_chain() {
-                        Some(chain) => path::pack_chain(&chain, &mut self.paths, anchor, rows),
-                        None => source.pack_into(&mut self.$list, anchor, rows),
+                    let chain = source.as_chain();
+                    match &chain {
+                        Some(chain) => path::pack_chain(chain, &mut self.paths, anchor, &mut self.rows),
+                        None => source.pack_into(&mut self.$list, anchor, &mut self.rows),
                     }
                     if has_ends {
-                        self.add_balls(source.ball(), anchor, &mut balls);
+                        let core = chain.map_or_else(|| source.core().ball(), |lit| Some(lit.chain.ball()));
+                        self.add_balls(core, anchor, &mut balls);
                     }
                 })*
                 if has_ends {
