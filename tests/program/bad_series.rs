@@ -75,6 +75,21 @@ const BAD_SERIES: &[(&str, &str, &str)] = &[
         "required, but missing",
     ),
     (
+        "[[beam]]\ndirection = [1, 0, 0]\nintensity = [1, 2]\n",
+        "4:1: beam[0].series_length",
+        "required with intensity, colors, radii or dashes",
+    ),
+    (
+        "[[beam]]\ndirection = [1, 0, 0]\nradii = [0.1, 0.2]\nseries_length = 2\ntaper_length = 1\n",
+        "8:16: beam[0].taper_length",
+        "does not go with intensity, colors, radii or dashes",
+    ),
+    (
+        "[[curve]]\ncontrol_points = [[0,0,0],[1,0,0],[2,0,1]]\nintensity = [1, 2, 1]\ndashes = { count = 3 }\n",
+        "6:13: curve[0].intensity",
+        "goes by the curve's parameter",
+    ),
+    (
         "[[sphere]]\nprofile = \"convolution\"\n",
         "5:11: sphere[0].profile",
         "adds up the light of a [[segment]], [[path]] or [[torus]]; other cores have none",

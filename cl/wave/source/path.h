@@ -182,7 +182,8 @@ PER_RAY_IF_WIDE floatv path_integral(const Ray *const ray, const Sources *const 
         const path_light to_light = path_light_at(rows, path.source->is_even, &place, next_spot.at);
         stretch.light_from = from_light.value, stretch.light_to = to_light.value;
         const floatv widening = (to_light.radius - from_light.radius) * inverse(max(to - s, 1e-30f));
-        distance2 = widened(distance2, fma(widening, distance2.nearest - s, from_light.radius), widening);
+        if (any_lane(from_light.radius + to_light.radius > 0.0f))
+            distance2 = widened(distance2, fma(widening, distance2.nearest - s, from_light.radius), widening);
 #endif
         integral += integral_over(stretch, &distance2, &path.profile, quadrature);
 #ifdef SERIES

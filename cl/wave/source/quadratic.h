@@ -51,6 +51,13 @@ INLINE void refine(Quadratic *const q, const float3v at_nearest, const float3v s
 }
 
 #ifdef SHAPES
+// Says that softening changes the least alone.
+INLINE void bare_as_it_is(Quadratic *const q) {
+#ifdef WIDENS
+    q->bare_slope = q->slope, q->bare_nearest = q->nearest, q->bare_ahead = q->ahead;
+#endif
+}
+
 // Returns what the least lacks to where light ends.
 floatv left_at_least(const Profile *const profile, const Quadratic *const q) {
     return (profile->end2 - q->bare) + (profile->end2_rest - q->bare_rest);
@@ -61,9 +68,7 @@ INLINE void refine_bare(Quadratic *const q, const fine3v at_nearest) {
     const floatv rest = from_finev(fine_subtract(fine_dot3(at_nearest, at_nearest), to_finev(q->least)));
     q->bare = q->least;
     q->bare_rest = select(fma(-q->ahead, q->ahead, rest), splat(0.0f), fabs(q->nearest) > 1e3f);
-#ifdef WIDENS
-    q->bare_slope = q->slope, q->bare_nearest = q->nearest, q->bare_ahead = q->ahead;
-#endif
+    bare_as_it_is(q);
 }
 #endif
 

@@ -147,6 +147,7 @@ CALL_IF_SCALAR floatv curve_closed_form(const curve_peaks *const peaks, const Qu
         const floatv left2 = fma(to_end.ahead, to_end.ahead, curve_left2(peaks, nearest, x));
         to_end.bare = splat(path->profile.end2), to_end.bare_rest = path->profile.end2_rest - left2;
     }
+    bare_as_it_is(&to_end);
 #endif
     to_end.least += path->profile.softening2;
     const floatv integral = integral_over(evenly_lit(from, to), &to_end, &path->profile, quadrature);
