@@ -5,6 +5,7 @@
 mod common;
 
 mod along;
+mod arcs; // draws displaced cores as the reference does
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
 mod convolution;

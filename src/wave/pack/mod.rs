@@ -145,8 +145,10 @@ macro_rules! define_sources {
                 rows.has_series = false;
                 $(self.$list.clear();)*
                 $(for source in &scene.$list {
-                    match source.as_chain() {
-                        Some(chain) => path::pack_chain(&chain, &mut self.paths, anchor, rows),
+                    match source.as_chains() {
+                        Some(chains) => chains
+                            .iter()
+                            .for_each(|chain| path::pack_chain(chain, &mut self.paths, anchor, rows)),
                         None => source.pack_into(&mut self.$list, anchor, rows),
                     }
                 })*
