@@ -1,5 +1,6 @@
 //! Electric arcs: drawn as the reference draws them, like the core that they displace where they displace nothing.
 
+use energywave::image::ImageSize;
 use energywave::scene::{
     Camera, ElectricArc, Group, LightPath, Measure, Method, PathShape, Sampling, Segment,
 };
@@ -43,6 +44,10 @@ fn of_bolt(bolt: Segment) -> Scene {
 
 fn of_loop() -> Scene {
     let mut scene = scene();
+    scene.image = ImageSize {
+        width: 24,
+        height: 18,
+    };
     let points = [
         v(-0.9, 0.1, -0.5),
         v(0.8, 0.3, -0.6),
@@ -80,7 +85,7 @@ fn draws(renderer: &mut Renderer, scene: &Scene) {
 #[test]
 fn arcs_are_drawn_as_the_reference_draws_them_and_other_seeds_are_noticed() {
     let mut renderer = renderer(common::device().lanes, "");
-    for scene in [of_bolt(bolt(0)), of_bolt(bolt(3)), of_loop()] {
+    for scene in [of_bolt(bolt(3)), of_loop()] {
         draws(&mut renderer, &scene);
     }
 }
