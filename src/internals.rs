@@ -121,6 +121,7 @@ pub fn program_text(program: &ProgramTask<'_>) -> (String, String) {
         fading: program.fading,
         reduced: wave::Reduced::Sum,
         has_series: program.has_series,
+        has_ends: program.has_shapes && program.kernel == "tiles",
         has_depth: program.has_depth,
         film: FilmFormat::Floats,
         rays: match program.kernel {

@@ -34,7 +34,8 @@ CHECK_SIZE(Falloff, SIZEOF_FALLOFF);
 // kinds.h.
 typedef struct {
     uint begin[KIND_COUNT], end[KIND_COUNT];
-    uint first_count; // of its own in the list of counts
+    uint first_ball[KIND_COUNT]; // -D ENDS: where among the rows the balls around a kind's sources begin
+    uint first_count;            // of its own in the list of counts
 } Launch;
 CHECK_SIZE(Launch, SIZEOF_LAUNCH);
 

@@ -158,6 +158,7 @@ impl Wave {
         let (is_first, is_last) = plan.place_of(part);
         let film = film.arguments(compute, &part.pixels, plan.size, is_first, is_last)?;
         let launch = Launch {
+            first_ball: self.packed.sources.rows.first_balls.unwrap_or_default(),
             first_count: self.counts.first(),
             ..plan.launch(part)
         };

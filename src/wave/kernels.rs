@@ -27,6 +27,8 @@ pub(crate) struct Task {
     pub reduced: Reduced,
     /// Whether any has a series over its core.
     pub has_series: bool,
+    /// Tiles: whether the light of any ends.
+    pub has_ends: bool,
     /// Whether depths end the rays.
     pub has_depth: bool,
     pub film: FilmFormat,
@@ -181,6 +183,9 @@ fn task_definitions(workers: u32, counts_samples: bool, task: &Task, rule: &Rule
     }
     if task.has_series {
         definitions += " -D SERIES";
+    }
+    if task.has_ends {
+        definitions += " -D ENDS";
     }
     if task.has_depth {
         definitions += " -D DEPTH";

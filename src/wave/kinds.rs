@@ -8,6 +8,7 @@ use crate::scene::kinds::{KIND_COUNT, for_each_kind};
 const FILES: &[SourceFile<'static>] = embed!(
     "wave/quadrature/adaptive.h",
     "wave/quadrature/closed_form.h",
+    "wave/quadrature/closed_form_shape.h",
     "wave/quadrature/closed_form_square.h",
     "wave/quadrature/decay.h",
     "wave/quadrature/panel.h",
@@ -32,6 +33,7 @@ const FILES: &[SourceFile<'static>] = embed!(
     "wave/source/quadratic.h",
     "wave/source/sources.h",
     "wave/source/spline.h",
+    "wave/tiles/ball.h",
     "wave/tiles/clearance.h",
     "wave/tiles/hiding.h",
     "wave/tiles/settle.h",

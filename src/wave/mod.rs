@@ -205,6 +205,7 @@ impl Wave {
             reduced,
             kinds: self.packed.sources.counts().map(|count| count > 0),
             has_series: self.packed.sources.rows.has_series,
+            has_ends: self.packed.sources.rows.first_balls.is_some() && rays == Rays::Tiles,
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
             film,
             rays,

@@ -135,12 +135,13 @@ pub(super) fn word_count(part: &Part, counts: &Counts) -> u32 {
     ranges(part, counts).iter().map(words).sum()
 }
 
-/// Which sources of each kind a part takes.
+/// Which sources of each kind a part takes; where their balls are, others know.
 pub(super) fn launch(part: &Part, counts: &Counts) -> Launch {
     let ranges = ranges(part, counts);
     Launch {
         begin: ranges.each_ref().map(|range| range.start),
         end: ranges.each_ref().map(|range| range.end),
+        first_ball: [0; KIND_COUNT],
         first_count: 0,
     }
 }

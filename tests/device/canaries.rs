@@ -48,6 +48,7 @@ fn marks_left(
     let launch = layout::Launch {
         begin: [0; KINDS.len()],
         end: packed.counts().map(|count| count as u32),
+        first_ball: [0; KINDS.len()],
         first_count: 0,
     };
     fn upload<T: bytemuck::Pod>(compute: &Compute, values: &[T]) -> DeviceBuffer<T> {

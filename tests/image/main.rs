@@ -5,6 +5,7 @@
 mod common;
 
 mod along;
+mod along_cases;
 mod arcs; // draws displaced cores as the reference does
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
@@ -29,5 +30,6 @@ mod rays; // compares single rays with integrals that are known to nine digits
 mod rms; // holds roots of integrals of squares to their definition
 mod search; // draws what examples/hard_scenes has found
 mod segment; // holds segments to their definition
+mod shape_forms; // takes closed forms of shapes along every part of a ray
 mod shapes; // holds how fields fall off to their definition
 mod tiles; // holds interpolation by tiles to the tolerance, and counts what it costs

@@ -90,6 +90,11 @@ const BAD_SERIES: &[(&str, &str, &str)] = &[
         "makes 24000000 pieces of a core 3.0000 long and its branches, more than 65536: give at least 3.66e-4",
     ),
     (
+        "[[beam]]\ndirection = [1, 0, 0]\nseries_length = 2\narc = { amplitude = 0.1, scale = 1 }\n",
+        "7:7: beam[0].arc",
+        "displaces cores that end, and a beam does not: draw a [[segment]]",
+    ),
+    (
         "[[torus]]\nmajor_radius = 1\narc = { amplitude = 0.1, scale = 1, branches = 65 }\n",
         "6:48: torus[0].arc.branches",
         "65 branches; give from 0 to 64",

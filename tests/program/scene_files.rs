@@ -86,6 +86,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 reach: None,
                 peak: None,
                 layers: layers(random),
+                ..Beam::new(DVec3::X)
             });
         }
         scene.segments.push(Segment {
@@ -100,11 +101,11 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             taper_lengths: [number(random), 0.0],
             intensity: Some(vec![number(random); 4]),
             colors: Some(vec![vector(random), vector(random)]),
-            arc: random.bool().then(|| ElectricArc {
+            arc: Some(ElectricArc {
                 seed: u32::MAX,
                 drift: -1.0 / 3.0,
                 branches: 2,
-                time: number(random),
+                time: 1.0 / 11.0,
                 ..ElectricArc::new(1.0 / 7.0, 123.4)
             }),
             ..Segment::new(vector(random), vector(random))
@@ -150,8 +151,20 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
                 reach: Some(1200.0 + number(random)),
                 peak: None,
                 layers: layers(random),
+                ..Curve::new([DVec3::ZERO; 3])
             });
         }
+        scene.beams.push(Beam {
+            series_length: Some(number(random)),
+            radii: Some(vec![0.0, number(random)]),
+            colors: Some(vec![vector(random); 3]),
+            ..Beam::new(vector(random))
+        });
+        scene.curves.push(Curve {
+            radii: Some(vec![0.0, number(random)]),
+            dashes: Some(Dashes::new(7)),
+            ..Curve::new([0; 3].map(|_| vector(random)))
+        });
     }
 }
 

@@ -1,8 +1,9 @@
-// The integral over a stretch of a ray whose squared distance is a quadratic, of a field of any shape (profile.h): by
-// nodes, on both sides of the closest approach, as far as there is light.
+// The integral over a stretch of a ray whose squared distance is a quadratic, of a field of any shape (profile.h): in
+// closed form, or by nodes, on both sides of the closest approach, as far as there is light.
 #pragma once
 #include "../source/names.h"
 #include "closed_form.h"
+#include "closed_form_shape.h"
 #include "panel.h"
 #include "quadrature.h"
 
@@ -79,7 +80,12 @@ INLINE floatv stretch_near_field(const stretch_near *const near, const floatv x)
 // Integrates over what is lit of a stretch.
 CALL_IF_SCALAR floatv shape_over(const Stretch whole, const Quadratic *const distance2, const Profile *const profile,
                                  const Quadrature *const quadrature) {
-    const floatv left2 = (profile->end2 - distance2->bare) + (profile->end2_rest - distance2->bare_rest);
+    const floatv left2 = left_at_least(profile, distance2);
+#if !defined(FADING) && !defined(SQUARED)
+    floatv closed;
+    if (quadrature->decay.beta == 0.0f && closed_shape_over(&whole, distance2, profile, left2, &closed))
+        return quadrature->decay.strength * closed;
+#endif
     stretch_peaks peaks = {whole, *distance2, *profile, left2};
     intv is_lit = whole.to > whole.from;
     floatv from = whole.from, to = whole.to;

@@ -26,6 +26,8 @@ typedef struct Beam {
 } Beam;
 CHECK_SIZE(Beam, SIZEOF_BEAM);
 
+#define beam_is_quick 1
+
 #define beam_has_parts 1 // ahead of its tip, and behind
 
 // Lengths are doubled, but for heights.

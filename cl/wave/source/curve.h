@@ -27,6 +27,8 @@ typedef struct Curve {
 } Curve;
 CHECK_SIZE(Curve, SIZEOF_CURVE);
 
+#define curve_is_quick 0
+
 #define curve_has_parts 1 // of its local intensity
 #define curve_has_peaks_along 1
 #define curve_has_kinks 1       // where the nearest point jumps;

@@ -17,6 +17,8 @@ typedef struct Cylinder {
 } Cylinder;
 CHECK_SIZE(Cylinder, SIZEOF_CYLINDER);
 
+#define cylinder_is_quick 1
+
 // Lengths are doubled.
 typedef struct {
     Quadratic distance2;

@@ -31,6 +31,8 @@ typedef struct LightPath {
 } LightPath;
 CHECK_SIZE(LightPath, SIZEOF_LIGHTPATH);
 
+#define path_is_quick 0
+
 // These use the struct.
 #include "path/light.h"
 #include "path/nearest.h"

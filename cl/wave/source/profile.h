@@ -1,7 +1,7 @@
 // How a field falls off with the distance d to its core: a profile of q, q^2 = d^2 + radius^2, times a window that ends
-// at the source's reach. 1/q and its square without a window have closed forms (quadrature/stretch.h); what else there
-// is, a shape, is integrated by nodes. Only programs for scenes with inverse squares (-D INVERSE_SQUARES), or with
-// shapes (-D SHAPES), contain them.
+// at the source's reach. 1/q and its square without a window have closed forms (quadrature/stretch.h); of what else
+// there is, shapes, some have where light does not fade (quadrature/closed_form_shape.h). Only programs for scenes with
+// inverse squares (-D INVERSE_SQUARES), or with shapes (-D SHAPES), contain them.
 #pragma once
 #include "../../elementary.h"
 #include "../../view.h"

@@ -5,6 +5,7 @@
 #include "../../fine.h"
 #include "../../roots.h"
 #include "../../view.h"
+#include "profile.h"
 
 #if defined(SHAPES) && defined(SERIES) // a core may get thicker along the ray
 #define WIDENS
@@ -50,6 +51,11 @@ INLINE void refine(Quadratic *const q, const float3v at_nearest, const float3v s
 }
 
 #ifdef SHAPES
+// Returns what the least lacks to where light ends.
+floatv left_at_least(const Profile *const profile, const Quadratic *const q) {
+    return (profile->end2 - q->bare) + (profile->end2_rest - q->bare_rest);
+}
+
 // Refines the least further: where light ends, its last digits count.
 INLINE void refine_bare(Quadratic *const q, const fine3v at_nearest) {
     const floatv rest = from_finev(fine_subtract(fine_dot3(at_nearest, at_nearest), to_finev(q->least)));

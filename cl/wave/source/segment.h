@@ -23,6 +23,8 @@ typedef struct Segment {
 } Segment;
 CHECK_SIZE(Segment, SIZEOF_SEGMENT);
 
+#define segment_is_quick 1
+
 // Lengths are doubled, but for heights.
 typedef struct {
     Quadratic to_line, to_first, to_last; // squared distances: to the line, and to its ends
@@ -34,7 +36,8 @@ typedef struct {
 #endif
 } segment_path;
 
-PER_RAY_IF_WIDE segment_path segment_along(const Ray *const ray, const Sources *const sources, const uint index) {
+// Leaves the distances to the ends out.
+INLINE segment_path segment_line_along(const Ray *const ray, const Sources *const sources, const uint index) {
     __global const Segment *const segment = &sources->segment_list[index];
     const fine3v direction = fine3(segment->direction, segment->direction_rest);
     segment_path path;
@@ -50,8 +53,6 @@ PER_RAY_IF_WIDE segment_path segment_along(const Ray *const ray, const Sources *
     const floatv softening2 = path.profile.softening2;
     path.to_line = distance2_to_line(ray, segment->point, segment->point_rest, segment->direction,
                                      segment->direction_rest, softening2);
-    path.to_first = distance2_to_point(ray, segment->from, segment->from_rest, softening2);
-    path.to_last = distance2_to_point(ray, segment->to, segment->to_rest, softening2);
     path.over_first = height_over(ray, segment->from, segment->from_rest, direction);
     path.over_last = height_over(ray, segment->to, segment->to_rest, direction);
     // A ray within one of the planes is level with the other.
@@ -60,6 +61,37 @@ PER_RAY_IF_WIDE segment_path segment_along(const Ray *const ray, const Sources *
     path.over_last.slope = select(path.over_last.slope, splat(0.0f), is_level);
     return path;
 }
+
+INLINE void segment_add_ends(segment_path *const path, const Ray *const ray, const Sources *const sources,
+                             const uint index) {
+    __global const Segment *const segment = &sources->segment_list[index];
+    path->to_first = distance2_to_point(ray, segment->from, segment->from_rest, path->profile.softening2);
+    path->to_last = distance2_to_point(ray, segment->to, segment->to_rest, path->profile.softening2);
+}
+
+PER_RAY_IF_WIDE segment_path segment_along(const Ray *const ray, const Sources *const sources, const uint index) {
+    segment_path path = segment_line_along(ray, sources, index);
+    segment_add_ends(&path, ray, sources, index);
+    return path;
+}
+
+#ifdef SHAPES
+// Returns whether the line alone lights the rays: where it does, they are beside it.
+INLINE bool segment_is_line(const segment_path *const path, const Ray *const ray) {
+    const Profile *const profile = &path->profile;
+    const Quadratic *const to_line = &path->to_line;
+    if (!HAS_END(profile))
+        return false;
+    const floatv left2 = left_at_least(profile, to_line);
+    const floatv per_slope = inverse(max(to_line->slope, 1e-18f));
+    const floatv half_length = 0.5f * twice_sqrt(max(left2, 1e-30f)) * per_slope;
+    const floatv middle = fma(-to_line->ahead, per_slope, to_line->nearest);
+    const floatv from = clamp(middle - half_length, 0.0f, ray->end), to = clamp(middle + half_length, 0.0f, ray->end);
+    const floatv above = min(height_at(&path->over_first, from), height_at(&path->over_first, to));
+    const floatv below = max(height_at(&path->over_last, from), height_at(&path->over_last, to));
+    return !any_lane((left2 > 0.0f) & (to > from) & !((above >= 0.0f) & (below <= 0.0f)));
+}
+#endif
 
 #ifdef CONVOLUTION
 INLINE ConvolvedPiece segment_piece(const segment_path *const path) {
@@ -87,7 +119,12 @@ floatv segment_field(const segment_path *const path, const floatv s) {
 
 PER_RAY_IF_WIDE floatv segment_integral(const Ray *const ray, const Sources *const sources, const uint index,
                                         const Quadrature *const quadrature) {
-    const segment_path path = segment_along(ray, sources, index);
+    segment_path path = segment_line_along(ray, sources, index);
+#ifdef SHAPES
+    if (segment_is_line(&path, ray))
+        return integral_over(evenly_lit(splat(0.0f), ray->end), &path.to_line, &path.profile, quadrature);
+#endif
+    segment_add_ends(&path, ray, sources, index);
 #if defined(CONVOLUTION) && defined(EXACT)
     if (path.is_convolved) {
         const ConvolvedPiece piece = segment_piece(&path);

@@ -15,6 +15,8 @@ typedef struct Sphere {
 } Sphere;
 CHECK_SIZE(Sphere, SIZEOF_SPHERE);
 
+#define sphere_is_quick 1
+
 // Lengths are doubled.
 typedef struct {
     Quadratic distance2;

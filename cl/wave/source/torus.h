@@ -27,6 +27,8 @@ typedef struct Torus {
 } Torus;
 CHECK_SIZE(Torus, SIZEOF_TORUS);
 
+#define torus_is_quick 0
+
 #define torus_has_peaks_along 1
 #define torus_has_two_panels 1 // on both sides of the axis
 

@@ -3,6 +3,7 @@
 // next to its core, whatever the others do.
 #include "../../film.h"
 #include "../radiance.h"
+#include "ball.h"
 #include "clearance.h"
 #include "hiding.h"
 #include "smoothness.h"
@@ -64,6 +65,55 @@ uint lowest_bit(const uint bits) {
     return 31u - clz(bits & -bits);
 }
 
+#ifdef ENDS
+// Whether a ball holds all light of a source, and whether that lies beside a cone.
+#define BALL_OF(number, index) (task->sources->rows[task->launch->first_ball[number] + (index)])
+#define HAS_BALL(number, index) (BALL_OF(number, index).w >= 0.0f)
+#define PASSES_BY(number, index, cone) is_beside(BALL_OF(number, index), cone)
+
+// Returns true if any of the sources of one kind may light a cone; `bits` has those of a word that count.
+#define LIGHTS(number, bits)                                                                                           \
+    for (uint begin = launch->begin[number]; begin < launch->end[number]; begin += 32u, ++word) {                      \
+        for (uint left = bits; left != 0; left &= left - 1u) {                                                         \
+            if (!PASSES_BY(number, begin + lowest_bit(left), cone))                                                    \
+                return true;                                                                                           \
+        }                                                                                                              \
+    }
+#define LIGHTS_TILE(kind, Type, number)                                                                                \
+    LIGHTS(number, parent_open ? parent_open[word] : first_bits(launch->end[number] - begin))
+#define LIGHTS_BLOCK(kind, Type, number) LIGHTS(number, memory->open[word])
+
+// Returns whether any source may light a tile, of those that are open in the tile that it is a quarter of, or of all.
+bool may_light_tile(const TileTask *const task, const Cone *const cone, __global const uint *const parent_open) {
+    const Launch *const launch = task->launch;
+    uint word = 0;
+    KINDS(LIGHTS_TILE)
+    return false;
+}
+
+// Returns whether any source that is open may light a block.
+bool may_light_block(const TileTask *const task, const Cone *const cone, __local const TileMemory *const memory) {
+    const Launch *const launch = task->launch;
+    uint word = 0;
+    KINDS(LIGHTS_BLOCK)
+    return false;
+}
+
+// Returns whether a tile has no light to interpolate.
+bool is_black(__local const float *const light) {
+    uint bits = 0;
+    for (uint k = 0; k < LIGHT_OF_TILE; ++k)
+        bits |= as_uint(light[k]);
+    return bits == 0u;
+}
+#else
+#define HAS_BALL(number, index) false
+#define PASSES_BY(number, index, cone) false
+#define may_light_tile(task, cone, parent_open) true
+#define may_light_block(task, cone, memory) true
+#define is_black(light) false
+#endif
+
 // Settles the sources of one kind that are open in the tile this one is a quarter of, or all of them.
 #define SETTLE(kind, Type, number)                                                                                     \
     for (uint begin = launch->begin[number]; begin < launch->end[number]; begin += 32u, ++word) {                      \
@@ -71,27 +121,48 @@ uint lowest_bit(const uint bits) {
         const uint all = parent_open ? parent_open[word] : first_bits(launch->end[number] - begin);                    \
         for (uint left = hiding.is_dark ? 0u : all; left != 0; left &= left - 1u) {                                    \
             const uint bit = lowest_bit(left);                                                                         \
+            if (PASSES_BY(number, begin + bit, &cone))                                                                 \
+                continue;                                                                                              \
             if (hiding.end_error > MOST_END_ERROR ||                                                                   \
-                !kind##_settle(task, &rays, hiding.end_error, begin + bit, memory, &integrals))                        \
+                !kind##_settle(task, &rays, hiding.end_error, begin + bit, memory, &integrals)) {                      \
                 open |= 1u << bit;                                                                                     \
+                is_slow |= !(kind##_is_quick && HAS_BALL(number, begin + bit));                                        \
+            }                                                                                                          \
         }                                                                                                              \
         if (get_local_id(0) == 0)                                                                                      \
             memory->open[word] = open;                                                                                 \
         is_open |= open;                                                                                               \
     }
 
-// Settles the sources on the tile, and returns whether any is not smooth there.
-INLINE bool settle_sources(const TileTask *const task, const Tile *const tile, __global const uint *const parent_open,
+// What becomes of a tile: it is painted as it is, or pixel by pixel, or left to the next pass.
+#define ALL_SETTLED 0u
+#define BY_PIXELS 1u
+#define LEFT_OPEN 2u
+
+// Tiles of this side are not cut further for what ends and is quick: their blocks are tested one by one.
+#define QUICK_SIZE 16u
+
+// Settles the sources on the tile, and returns what becomes of it.
+INLINE uint settle_sources(const TileTask *const task, const Tile *const tile, __global const uint *const parent_open,
                            __local TileMemory *const memory) {
     const Launch *const launch = task->launch;
+    const Cone cone = cone_of_tile(task->screen->view, tile, task->pass->size);
+    if (!may_light_tile(task, &cone, parent_open)) {
+        meet();
+        return ALL_SETTLED;
+    }
     const TileRays rays = rays_of_tile(task->screen, task->pass, tile);
     const Hiding hiding =
         hiding_of_tile(task->screen, task->pass, tile, &rays, task->end_row, memory->integrals, memory->excess);
     uint word = 0, is_open = 0, integrals = 0;
+    bool is_slow = false;
     KINDS(SETTLE)
     meet();
     atomic_add(task->quadrature->counts + COUNT_INTEGRALS, integrals);
-    return is_open != 0;
+    if (is_open == 0u)
+        return ALL_SETTLED;
+    const bool is_cut = is_slow || task->pass->size > QUICK_SIZE;
+    return is_cut && !task->pass->is_last ? LEFT_OPEN : BY_PIXELS;
 }
 
 // Adds the light of the sources of one kind that stayed open.
@@ -99,14 +170,16 @@ INLINE bool settle_sources(const TileTask *const task, const Tile *const tile, _
     for (uint begin = launch->begin[number]; begin < launch->end[number]; begin += 32u, ++word) {                      \
         for (uint left = memory->open[word]; left != 0; left &= left - 1u) {                                           \
             const uint i = begin + lowest_bit(left);                                                                   \
+            if (PASSES_BY(number, i, cone))                                                                            \
+                continue;                                                                                              \
             const floatv light = reduced(kind##_integral(ray, task->sources, i, task->quadrature));                    \
             radiance = fma3(uniform3(kind##_emission(task->sources, i)), light, radiance);                             \
             *integrals += LANES;                                                                                       \
         }                                                                                                              \
     }
 
-// Returns the light of all sources that stayed open, along a ray.
-INLINE float3v open_light_along(const TileTask *const task, const Ray *const ray,
+// Returns the light of all sources that stayed open, along rays within a cone.
+INLINE float3v open_light_along(const TileTask *const task, const Ray *const ray, const Cone *const cone,
                                 __local const TileMemory *const memory, uint *const integrals) {
     const Launch *const launch = task->launch;
     float3v radiance = uniform3((float4)(0.0f));
@@ -121,25 +194,34 @@ INLINE void paint_tile(const TileTask *const task, const Tile *const tile, const
     const TilePass *const pass = task->pass;
     const uint width = task->screen->view->width;
     uint integrals = 0;
+    const bool is_dark = is_black(memory->light);
+    const BlockCones cones = cones_of_blocks(task->screen->view, tile);
     for (uint y = 0; y < pass->size && tile->row + y < task->end_row; y += BLOCK_HEIGHT) {
 #if TILE_WORKERS > 1
         mem_fence(CLK_LOCAL_MEM_FENCE); // else compilers keep all of the tile's light in registers, 48 of them
 #endif
         for (uint round = 0; round < BLOCK_ROUNDS; ++round) {
             const uintv place = first_ray(round) + LANE_NUMBERS, row = y + place / BLOCK_WIDTH;
-            const Basis down = basis_at(pass, row);
             floatv red[NODES_A_SIDE], green[NODES_A_SIDE], blue[NODES_A_SIDE];
-            interpolate_down(memory->light, &down, red);
-            interpolate_down(memory->light + TILE_RAYS, &down, green);
-            interpolate_down(memory->light + 2u * TILE_RAYS, &down, blue);
+            if (!is_dark) {
+                const Basis down = basis_at(pass, row);
+                interpolate_down(memory->light, &down, red);
+                interpolate_down(memory->light + TILE_RAYS, &down, green);
+                interpolate_down(memory->light + 2u * TILE_RAYS, &down, blue);
+            }
             for (uint x = 0; x < pass->size && tile->column + x < width; x += BLOCK_WIDTH) {
                 const uintv column = x + place % BLOCK_WIDTH;
-                const Basis across = basis_at(pass, column);
-                float3v radiance = {interpolate_across(red, &across), interpolate_across(green, &across),
-                                    interpolate_across(blue, &across)};
-                if (is_open) {
+                float3v radiance = uniform3((float4)(0.0f));
+                if (!is_dark) {
+                    const Basis across = basis_at(pass, column);
+                    radiance.x = interpolate_across(red, &across);
+                    radiance.y = interpolate_across(green, &across);
+                    radiance.z = interpolate_across(blue, &across);
+                }
+                const Cone cone = cone_of_block(&cones, x, y);
+                if (is_open && may_light_block(task, &cone, memory)) {
                     const Ray ray = ray_through(task->screen, tile->column + column, tile->row + row);
-                    radiance = add3(radiance, open_light_along(task, &ray, memory, &integrals));
+                    radiance = add3(radiance, open_light_along(task, &ray, &cone, memory, &integrals));
                 }
                 const uint corner = (tile->row + y) * width + tile->column + x;
                 store_block(task->part, corner - task->part->first, first_ray(round), width - tile->column - x,
@@ -211,11 +293,11 @@ INLINE void render_tile(const TileTask *const task, const uint number, const Ope
     meet();
     if (has_parent)
         inherit_light(pass, &tile, &parent, memory->light);
-    const bool is_open = settle_sources(task, &tile, has_parent ? parent_place + OPEN_TILE_PLACE : 0, memory);
-    if (is_open && !pass->is_last)
+    const uint fate = settle_sources(task, &tile, has_parent ? parent_place + OPEN_TILE_PLACE : 0, memory);
+    if (fate == LEFT_OPEN)
         leave_open(task, &tile, memory, open);
     else
-        paint_tile(task, &tile, is_open, memory, FILM_ARGUMENT);
+        paint_tile(task, &tile, fate == BY_PIXELS, memory, FILM_ARGUMENT);
 }
 
 // Returns the first of so many tiles that lies after a share of them.

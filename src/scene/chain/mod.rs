@@ -15,6 +15,8 @@ pub use arc::ElectricArc;
 pub use dashes::Dashes;
 pub(crate) use piece::Piece;
 
+use super::source::ball_around;
+
 /// Pieces that follow each other without a gap.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Run {
@@ -113,8 +115,13 @@ const MOST_HALVINGS: u32 = 7;
 const ROUGH_CHORDS: usize = 16;
 
 impl Chain {
-    pub(crate) fn pieces(&self) -> impl Iterator<Item = &Piece> {
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = &Piece> + Clone {
         self.runs.iter().flat_map(|run| &run.pieces)
+    }
+
+    /// Returns a ball that it lies in: its centre and radius.
+    pub(crate) fn ball(&self) -> (DVec3, f64) {
+        ball_around(self.pieces().map(Piece::ball))
     }
 
     /// Returns half the diagonal of the box around the ends of its pieces.

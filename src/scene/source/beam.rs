@@ -3,8 +3,11 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Brightness, Core, HasLight, Light, Placement, Profile, SourceKind, source, source_struct};
-use crate::scene::values::{Checked, direction, finite, named, positive, read_vector, vector};
+use super::{
+    Brightness, Core, HasLight, Light, Placement, Profile, Shared, SourceKind, emissions_along, source, source_struct,
+};
+use crate::scene::chain::{LitChain, Piece, Run};
+use crate::scene::values::{Fault, Checked, direction, finite, named, positive, read_vector, vector};
 
 source_struct! {
     /// A half-line of light (Abe, Watanabe 2010, eq. 6, 11, 12); `1/d^2` for `1/d` by its [`Profile`]. Ahead of the
@@ -12,7 +15,7 @@ source_struct! {
     /// its [`BeamEnd`] says.
     #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
     #[serde(try_from = "BeamTable", into = "BeamTable")]
-    pub struct Beam {
+    pub struct Beam along {
         /// The point at which it begins, M.
         pub tip: DVec3,
         /// Where it goes, of any length but zero.
@@ -21,6 +24,8 @@ source_struct! {
         pub end: BeamEnd,
         /// The coefficient of a further sphere around M, everywhere (2010, eq. 12: a).
         pub sphere_coefficient: f64,
+        /// Over which length from the tip series and dashes go, world units; beyond it the last values hold.
+        pub series_length: Option<f64>,
     }
 }
 
@@ -35,16 +40,54 @@ pub enum BeamEnd {
     Taper(f64),
 }
 
+/// Beyond the end of every ray, world units.
+const BEYOND_ALL: f64 = 4e9;
+
 impl Beam {
     /// Makes a white beam from the origin.
     #[must_use]
     pub fn new(direction: DVec3) -> Self {
-        source!(Self {
+        source!(Self along {
             tip: DVec3::ZERO,
             direction,
             end: BeamEnd::Cap(None),
             sphere_coefficient: 0.0,
+            series_length: None,
         })
+    }
+
+    fn check_series(&self) -> Checked {
+        let along = self.along_keys();
+        along.check(&self.shared(), self.radius)?;
+        if along.arc.is_some() {
+            let message = "displaces cores that end, and a beam does not: draw a [[segment]]";
+            return Err(Fault::new("arc", message));
+        }
+        let is_even = along.is_even();
+        match self.series_length {
+            Some(length) => positive("series_length", length)?,
+            None if is_even => return Ok(()),
+            None => {
+                let message = "required with intensity, colors, radii or dashes: over which length from the tip they go";
+                return Err(Fault::new("series_length", message));
+            }
+        }
+        match self.uneven_end() {
+            Some(key) if !is_even => {
+                let message = "does not go with intensity, colors, radii or dashes: such a beam ends as a point does";
+                Err(Fault::new(key, message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Returns the key by which it does not end as a point of its own light does, if there is one.
+    fn uneven_end(&self) -> Option<&'static str> {
+        match self.end {
+            BeamEnd::Taper(_) => Some("taper_length"),
+            BeamEnd::Cap(Some(_)) => Some("cap_coefficient"),
+            BeamEnd::Cap(None) => (self.sphere_coefficient != 0.0).then_some("sphere_coefficient"),
+        }
     }
 
     /// Returns the coefficient of the sphere behind the tip, for one of its lights; 0 where there is a taper instead.
@@ -74,13 +117,18 @@ impl SourceKind for Beam {
             BeamEnd::Cap(None) => {}
         }
         finite("sphere_coefficient", self.sphere_coefficient)?;
+        self.check_series()?;
         self.shared().check(brightness, &|light| {
             let line = light.coefficient.abs().max(self.cap(light).abs());
-            line + self.sphere_coefficient.abs()
+            self.along_keys().strongest() * line + self.sphere_coefficient.abs()
         })
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+        if !self.along_keys().is_even() {
+            emissions_along(&self.along_keys().lights(&self.shared()), add);
+            return;
+        }
         for light in self.lights() {
             for coefficient in [light.coefficient, self.cap(&light), self.sphere_coefficient] {
                 add(coefficient * light.color);
@@ -91,6 +139,8 @@ impl SourceKind for Beam {
     fn move_core(&mut self, place: &Placement) {
         self.tip = place.point(self.tip);
         self.direction = place.direction(self.direction);
+        self.series_length = self.series_length.map(|length| place.scale * length);
+        self.scale_along(place.scale);
         if let BeamEnd::Taper(length) = &mut self.end {
             *length *= place.scale;
         }
@@ -106,11 +156,24 @@ impl SourceKind for Beam {
     }
 
     fn uneven(&self) -> Option<&'static str> {
-        match self.end {
-            BeamEnd::Taper(_) => Some("taper_length"),
-            BeamEnd::Cap(Some(_)) => Some("cap_coefficient"),
-            BeamEnd::Cap(None) => (self.sphere_coefficient != 0.0).then_some("sphere_coefficient"),
+        self.uneven_end().or(self.along_keys().uneven())
+    }
+
+    fn as_chains(&self) -> Option<Vec<LitChain>> {
+        let along = self.along_keys();
+        let length = self.series_length?;
+        if along.is_even() {
+            return None;
         }
+        let direction = self.direction.normalize();
+        let last = self.tip + length * direction;
+        let mut arms = along.lit(Run::whole(vec![Piece::straight(self.tip, last)]), None, &self.shared());
+        arms.first_mut()?.chain.runs.push(Run {
+            pieces: vec![Piece::straight(last, last + BEYOND_ALL * direction)],
+            shares: [1.0, 1.0],
+            fade: [1.0, 1.0],
+        });
+        Some(arms)
     }
 
     fn evened(self) -> Self {
@@ -135,7 +198,7 @@ source_struct! {
     /// A beam as a file describes it.
     #[derive(Deserialize, Serialize)]
     #[serde(deny_unknown_fields)]
-    struct BeamTable {
+    struct BeamTable along {
         #[serde(default, deserialize_with = "read_vector")]
         tip: DVec3,
         #[serde(deserialize_with = "read_vector")]
@@ -146,7 +209,14 @@ source_struct! {
         sphere_coefficient: f64,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         taper_length: Option<f64>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        series_length: Option<f64>,
     }
+}
+
+/// Returns what is said by the keys that all kinds have, where radii may stand for the radius.
+fn own_keys(radius: f64, shared: Shared<'_>) -> Shared<'_> {
+    Shared { radius, ..shared }
 }
 
 impl TryFrom<BeamTable> for Beam {
@@ -168,7 +238,13 @@ impl TryFrom<BeamTable> for Beam {
             direction: table.direction,
             end,
             sphere_coefficient: table.sphere_coefficient,
-        } like table.shared()))
+            series_length: table.series_length,
+            intensity: table.intensity.clone(),
+            colors: table.colors.clone(),
+            radii: table.radii.clone(),
+            arc: table.arc,
+            dashes: table.dashes,
+        } like own_keys(table.radius, table.shared())))
     }
 }
 
@@ -183,6 +259,12 @@ impl From<Beam> for BeamTable {
             },
             sphere_coefficient: beam.sphere_coefficient,
             taper_length: beam.taper_length(),
-        } like beam.shared())
+            series_length: beam.series_length,
+            intensity: beam.intensity.clone(),
+            colors: beam.colors.clone(),
+            radii: beam.radii.clone(),
+            arc: beam.arc,
+            dashes: beam.dashes,
+        } like own_keys(beam.radius, beam.shared()))
     }
 }

@@ -47,6 +47,16 @@ impl Core {
         (-reach(-1.0), reach(1.0))
     }
 
+    /// Returns a ball that it lies in, centre and radius; of a line without end there is none.
+    pub(crate) fn ball(&self) -> Option<(DVec3, f64)> {
+        match self {
+            Self::Bezier(points) => Some(ball_around(points.iter().map(|point| (*point, 0.0)))),
+            Self::Chain(corners) => Some(ball_around(corners.iter().map(|point| (*point, 0.0)))),
+            Self::Circle { center, radius, .. } => Some((*center, *radius)),
+            Self::Line { .. } => None,
+        }
+    }
+
     /// Returns how far it reaches in a direction of length 1, from the origin; infinite for a line that goes on.
     pub(crate) fn reach(&self, direction: DVec3) -> f64 {
         match *self {
@@ -127,6 +137,16 @@ impl Core {
     }
 }
 
+/// Returns a ball around balls: centres and radii.
+pub(crate) fn ball_around(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
+    let centers = || balls.clone().map(|(center, _)| center);
+    let low = centers().reduce(DVec3::min).unwrap_or_default();
+    let high = centers().reduce(DVec3::max).unwrap_or_default();
+    let middle = 0.5 * (low + high);
+    let far = |(center, radius): (DVec3, f64)| center.distance(middle) + radius;
+    (middle, balls.map(far).fold(0.0, f64::max))
+}
+
 fn bezier<T>([a, b, c]: [T; 3], t: f64) -> T
 where
     T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
@@ -178,6 +198,10 @@ mod tests {
         assert_eq!(ring.least_distance(v(5.0, 0.0, 5.0)), 5.0);
         let arc = Core::Bezier([v(-1.0, 0.0, 0.0), v(0.0, 2.0, 0.0), v(1.0, 0.0, 0.0)]);
         assert_eq!((arc.reach(y), arc.reach(x), arc.reach(-y)), (1.0, 1.0, 0.0));
+        let (center, radius) = arc.ball().unwrap();
+        assert_eq!((center, radius), (v(0.0, 1.0, 0.0), 2.0_f64.sqrt()));
+        assert_eq!(ring.ball(), Some((v(0.0, 0.0, 1.0), 2.0)));
+        assert_eq!(line(true).ball(), None);
         let near = arc.least_distance(v(0.0, 4.0, 0.0));
         assert!(near <= 3.0 && near > 2.95, "{near}");
     }

@@ -3,7 +3,9 @@
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, item, source, source_struct};
+use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, emissions_along, item, source, source_struct};
+use crate::scene::Dashes;
+use crate::scene::chain::{Along, LitChain, Piece, Run};
 use crate::scene::values::{Checked, Fault, finite, read_vectors, vector};
 
 source_struct! {
@@ -11,7 +13,7 @@ source_struct! {
     /// point `C(t*)`, `S(t*)` the local intensity there (2015, eq. 8-17).
     #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
     #[serde(deny_unknown_fields)]
-    pub struct Curve {
+    pub struct Curve thick {
         /// Bezier control points. They may be collinear or coincide.
         #[serde(deserialize_with = "three_points")]
         pub control_points: [DVec3; 3],
@@ -19,6 +21,20 @@ source_struct! {
         /// least 3; `None`: 1 everywhere.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub intensity: Option<Vec<f64>>,
+        /// What red, green and blue are multiplied with along the core: values at equal steps of its length, linear
+        /// between, at least 2; `None`: 1 everywhere. Not with an intensity.
+        #[serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "crate::scene::colors::read_some_colors"
+        )]
+        pub colors: Option<Vec<DVec3>>,
+        /// How thick the core is along it, in the place of `radius`, as `colors` go; world units.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub radii: Option<Vec<f64>>,
+        /// Gaps that part the core. Not with an intensity.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub dashes: Option<Dashes>,
     }
 }
 
@@ -29,7 +45,20 @@ impl Curve {
         source!(Self {
             control_points,
             intensity: None,
+            colors: None,
+            radii: None,
+            dashes: None,
         })
+    }
+
+    /// Returns what changes along it by its length; the intensity goes by the curve's parameter.
+    fn along_keys(&self) -> Along<'_> {
+        Along {
+            colors: self.colors.as_deref(),
+            radii: self.radii.as_deref(),
+            dashes: self.dashes,
+            ..Along::default()
+        }
     }
 }
 
@@ -40,11 +69,21 @@ impl SourceKind for Curve {
         }
         let series = self.intensity.iter().flatten();
         let strongest = series.fold(1.0_f64, |most, value| most.max(value.abs()));
+        let strongest = strongest.max(self.along_keys().strongest());
         self.shared()
             .check(brightness, &|light| strongest * light.coefficient.abs())?;
+        let along = self.along_keys();
+        along.check(&self.shared(), self.radius)?;
         let Some(series) = &self.intensity else {
             return Ok(());
         };
+        if !along.is_even() {
+            return Err(Fault::new(
+                "intensity",
+                "goes by the curve's parameter, colors, radii and dashes by its length: leave it out, or draw a [[path]] \
+                 of the shape \"quadratic\"",
+            ));
+        }
         if series.len() < 3 {
             return Err(Fault::new(
                 "intensity",
@@ -60,7 +99,17 @@ impl SourceKind for Curve {
         Ok(())
     }
 
+    fn as_chains(&self) -> Option<Vec<LitChain>> {
+        let along = self.along_keys();
+        let whole = || Run::whole(vec![Piece::quadratic(self.control_points)]);
+        (!along.is_even()).then(|| along.lit(whole(), None, &self.shared()))
+    }
+
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+        if !self.along_keys().is_even() {
+            emissions_along(&self.along_keys().lights(&self.shared()), add);
+            return;
+        }
         for light in self.lights() {
             for weight in self.intensity.as_deref().unwrap_or(&[1.0]) {
                 add(weight * light.emission());
@@ -70,6 +119,7 @@ impl SourceKind for Curve {
 
     fn move_core(&mut self, place: &Placement) {
         self.control_points = self.control_points.map(|point| place.point(point));
+        self.radii.iter_mut().flatten().for_each(|radius| *radius *= place.scale);
     }
 
     fn core(&self) -> Core {
@@ -77,7 +127,8 @@ impl SourceKind for Curve {
     }
 
     fn uneven(&self) -> Option<&'static str> {
-        self.intensity.is_some().then_some("intensity")
+        let intensity = self.intensity.is_some().then_some("intensity");
+        intensity.or(self.along_keys().uneven())
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {

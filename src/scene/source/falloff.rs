@@ -61,6 +61,11 @@ impl Falloff {
         }
     }
 
+    /// Returns whether there is a distance from which on there is no light on the devices.
+    pub(crate) fn ends(&self) -> bool {
+        self.reach.is_some() || self.profile == Profile::Gaussian
+    }
+
     /// Returns whether it has a sharper peak than 1 over the distance.
     pub(crate) fn is_sharp(&self) -> bool {
         let is_soft = matches!(

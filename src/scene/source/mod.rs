@@ -15,7 +15,7 @@ mod falloff;
 mod layer;
 mod shared;
 
-pub(super) use core::Core;
+pub(super) use core::{Core, ball_around};
 pub use falloff::{Falloff, Profile};
 pub use layer::Layer;
 use layer::read_layers;

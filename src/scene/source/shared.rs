@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{Falloff, Layer, Light, Profile};
 
 /// Defines a source's struct: the fields that are its kind's own, then those that every kind has; with `along` also
-/// those of a core along which light may change.
+/// those of a core along which light may change. With `thick` the kind's own `radii` may stand for the radius.
 macro_rules! source_struct {
     (
         $(#[$attribute:meta])*
@@ -19,12 +19,21 @@ macro_rules! source_struct {
     };
     (
         $(#[$attribute:meta])*
-        $visibility:vis struct $Type:ident along { $($fields:tt)* }
+        $visibility:vis struct $Type:ident thick { $($fields:tt)* }
     ) => {
         $crate::scene::source::shared::source_struct! {
             @thickest |source| source.radii.iter().flatten().copied().fold(source.radius, f64::max);
             $(#[$attribute])*
-            $visibility struct $Type {
+            $visibility struct $Type { $($fields)* }
+        }
+    };
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis struct $Type:ident along { $($fields:tt)* }
+    ) => {
+        $crate::scene::source::shared::source_struct! {
+            $(#[$attribute])*
+            $visibility struct $Type thick {
                 $($fields)*
                 /// What the light is multiplied with along the core: values at equal steps of its length, linear
                 /// between, at least 2; `None`: 1 everywhere.
@@ -50,6 +59,7 @@ macro_rules! source_struct {
             }
         }
 
+        #[allow(dead_code, reason = "a table of a file is only read and written")]
         impl $Type {
             /// Returns what its keys say of the change along its core.
             fn along_keys(&self) -> $crate::scene::chain::Along<'_> {

@@ -49,11 +49,12 @@ device_struct! {
 }
 
 device_struct! {
-    /// Which sources of each kind a launch takes, and where it counts.
-    Launch [8 * KIND_COUNT + 4] {
+    /// Which sources of each kind a launch takes, where their balls are, and where it counts.
+    Launch [12 * KIND_COUNT + 4] {
         begin: [u32; KIND_COUNT] = 0,
         end: [u32; KIND_COUNT] = 4 * KIND_COUNT,
-        first_count: u32 = 8 * KIND_COUNT,
+        first_ball: [u32; KIND_COUNT] = 8 * KIND_COUNT,
+        first_count: u32 = 12 * KIND_COUNT,
     }
 }
 

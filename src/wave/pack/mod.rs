@@ -3,6 +3,7 @@
 //! Light near a core depends on small differences of large coordinates: what float32 leaves of a number travels in a
 //! field named `rest` (`cl/fine.h`).
 
+mod ball;
 pub mod layout;
 mod view;
 
@@ -94,6 +95,8 @@ pub struct Rows {
     pub list: Vec<Row>,
     /// Whether there are series among them.
     pub has_series: bool,
+    /// Where the balls around every kind's sources begin; `None`: no light ends, and there are none.
+    pub first_balls: Option<[u32; KIND_COUNT]>,
 }
 
 /// What the packing asks of every kind of source.
@@ -143,14 +146,46 @@ macro_rules! define_sources {
                 let rows = &mut self.rows;
                 rows.list.clear();
                 rows.has_series = false;
+                rows.first_balls = None;
                 $(self.$list.clear();)*
+                let has_ends = scene.any_falloff(|it| it.ends());
+                let mut balls: [Vec<Row>; KIND_COUNT] = Default::default();
                 $(for source in &scene.$list {
                     match source.as_chains() {
-                        Some(chains) => chains
-                            .iter()
-                            .for_each(|chain| path::pack_chain(chain, &mut self.paths, anchor, rows)),
-                        None => source.pack_into(&mut self.$list, anchor, rows),
+                        Some(chains) => {
+                            for lit in &chains {
+                                path::pack_chain(lit, &mut self.paths, anchor, &mut self.rows);
+                                if has_ends {
+                                    self.add_balls(Some(lit.chain.ball()), anchor, &mut balls);
+                                }
+                            }
+                        }
+                        None => {
+                            source.pack_into(&mut self.$list, anchor, &mut self.rows);
+                            if has_ends {
+                                self.add_balls(source.core().ball(), anchor, &mut balls);
+                            }
+                        }
                     }
+                })*
+                if has_ends {
+                    let first = self.rows.list.len();
+                    self.rows.first_balls = Some(ball::first_balls(first, self.counts()));
+                    self.rows.list.extend(balls.iter().flatten());
+                }
+            }
+
+            /// Adds a ball for every entry that has none yet, around a core that lies in a ball.
+            fn add_balls(
+                &self,
+                core: Option<(DVec3, f64)>,
+                anchor: &Anchor,
+                balls: &mut [Vec<Row>; KIND_COUNT],
+            ) {
+                let mut of_kinds = balls.iter_mut();
+                $(if let Some(balls) = of_kinds.next() {
+                    let new = self.$list[balls.len()..].iter();
+                    balls.extend(new.map(|it| ball::ball(core, &it.falloff, anchor)));
                 })*
             }
 
