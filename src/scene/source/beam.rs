@@ -68,7 +68,8 @@ impl Beam {
             Some(length) => positive("series_length", length)?,
             None if is_even => return Ok(()),
             None => {
-                let message = "required with intensity, colors, radii or dashes: over which length from the tip they go";
+                let message =
+                    "required with intensity, colors, radii or dashes: over which length from the tip they go";
                 return Err(Fault::new("series_length", message));
             }
         }

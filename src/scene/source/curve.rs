@@ -80,8 +80,8 @@ impl SourceKind for Curve {
         if !along.is_even() {
             return Err(Fault::new(
                 "intensity",
-                "goes by the curve's parameter, colors, radii and dashes by its length: leave it out, or draw a [[path]] \
-                 of the shape \"quadratic\"",
+                "goes by the curve's parameter, colors, radii and dashes by its length: leave it out, or draw a \
+                 [[path]] of the shape \"quadratic\"",
             ));
         }
         if series.len() < 3 {
