@@ -31,7 +31,7 @@ mod warnings;
 use glam::DVec3;
 
 pub use camera::Camera;
-pub use chain::Dashes;
+pub use chain::{Dashes, ElectricArc};
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;
 #[cfg(feature = "files")]

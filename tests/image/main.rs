@@ -6,6 +6,7 @@ mod common;
 
 mod along;
 mod along_cases;
+mod arcs; // draws displaced cores as the reference does
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
 mod convolution;

@@ -90,6 +90,47 @@ const BAD_SERIES: &[(&str, &str, &str)] = &[
         "goes by the curve's parameter",
     ),
     (
+        "[[segment]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\narc = { amplitude = -0.1, scale = 1 }\n",
+        "7:21: segment[0].arc.amplitude",
+        "a core is displaced by 0 or more; found -0.1",
+    ),
+    (
+        "[[segment]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\narc = { amplitude = 0.1, scale = 0 }\n",
+        "7:34: segment[0].arc.scale",
+        "positive",
+    ),
+    (
+        "[[segment]]\nfrom = [0, 0, 0]\nto = [3, 0, 0]\narc = { amplitude = 0.1, scale = 1e-6 }\n",
+        "7:34: segment[0].arc.scale",
+        "makes 24000000 pieces of a core 3.0000 long and its branches, more than 65536: give at least 3.66e-4",
+    ),
+    (
+        "[[beam]]\ndirection = [1, 0, 0]\nseries_length = 2\narc = { amplitude = 0.1, scale = 1 }\n",
+        "7:7: beam[0].arc",
+        "displaces cores that end, and a beam does not: draw a [[segment]]",
+    ),
+    (
+        "[[torus]]\nmajor_radius = 1\narc = { amplitude = 0.1, scale = 1, branches = 65 }\n",
+        "6:48: torus[0].arc.branches",
+        "65 branches; give from 0 to 64",
+    ),
+    (
+        "[[path]]\npoints = [[0, 0, 0], [1, 0, 0]]\narc = { amplitude = 0.1, scale = 1, time = inf }\n",
+        "6:44: path[0].arc.time",
+        "not a finite number",
+    ),
+    (
+        "[[path]]\npoints = [[0, 0, 0], [1, 0, 0]]\narc = { amplitude = 0.1 }\n",
+        "6:7: path[0].arc.scale",
+        "required, but missing",
+    ),
+    (
+        "[integration]\nreduction = \"rms\"\n[[segment]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\n\
+         arc = { amplitude = 0.1, scale = 1, branches = 2 }\n",
+        "9:7: segment[0].arc",
+        "even along its core: leave this out",
+    ),
+    (
         "[[sphere]]\nprofile = \"convolution\"\n",
         "5:11: sphere[0].profile",
         "adds up the light of a [[segment]], [[path]] or [[torus]]; other cores have none",

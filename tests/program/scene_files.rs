@@ -6,8 +6,8 @@ use crate::common;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, ToneMap};
 use energywave::internals::KINDS;
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Dashes, Decay, Integration, Layer, LightPath, Measure,
-    Method, PathShape, Profile, Reduction, Sampling, Segment, Sphere, Torus,
+    Beam, BeamEnd, Camera, Curve, Cylinder, Dashes, Decay, ElectricArc, Integration, Layer,
+    LightPath, Measure, Method, PathShape, Profile, Reduction, Sampling, Segment, Sphere, Torus,
 };
 use energywave::{ErrorKind, Scene};
 use fastrand::Rng;
@@ -101,6 +101,13 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             taper_lengths: [number(random), 0.0],
             intensity: Some(vec![number(random); 4]),
             colors: Some(vec![vector(random), vector(random)]),
+            arc: Some(ElectricArc {
+                seed: u32::MAX,
+                drift: -1.0 / 3.0,
+                branches: 2,
+                time: 1.0 / 11.0,
+                ..ElectricArc::new(1.0 / 7.0, 123.4)
+            }),
             ..Segment::new(vector(random), vector(random))
         });
         let points = (0..7).map(|_| vector(random)).collect();

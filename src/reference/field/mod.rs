@@ -16,8 +16,8 @@ macro_rules! field_modules {
             let mut sources = Vec::with_capacity(scene.source_count());
             $(for source in &scene.$list {
                 let add = &mut |part| sources.push(part);
-                match source.as_chain() {
-                    Some(chain) => path::add_chain(&chain, add),
+                match source.as_chains() {
+                    Some(chains) => chains.iter().for_each(|chain| path::add_chain(chain, add)),
                     None => source.lights().for_each(|light| source.add_parts(light, add)),
                 }
             })*

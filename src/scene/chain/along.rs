@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Chain, Dashes, LitChain, Run};
+use super::{Chain, Dashes, ElectricArc, LitChain, Run};
 use crate::scene::source::{CoreLight, Falloff, Light, Profile, Shared, item};
 use crate::scene::values::{Checked, Fault, finite, vector};
 
@@ -13,6 +13,7 @@ pub(crate) struct Along<'a> {
     pub intensity: Option<&'a [f64]>,
     pub colors: Option<&'a [DVec3]>,
     pub radii: Option<&'a [f64]>,
+    pub arc: Option<ElectricArc>,
     pub dashes: Option<Dashes>,
     /// Over which shares of the core, from either end, its light rises from 0; 0: it does not.
     pub tapers: [f64; 2],
@@ -59,6 +60,7 @@ impl Along<'_> {
         self.intensity.is_none()
             && self.colors.is_none()
             && self.radii.is_none()
+            && self.arc.is_none()
             && self.dashes.is_none()
             && self.tapers == [0.0; 2]
     }
@@ -69,6 +71,7 @@ impl Along<'_> {
             (self.intensity.is_some(), "intensity"),
             (self.colors.is_some(), "colors"),
             (self.tapers != [0.0; 2], "taper_lengths"),
+            (self.arc.is_some_and(|arc| arc.branches > 0), "arc"),
         ];
         keys.into_iter()
             .find_map(|(is_named, key)| is_named.then_some(key))
@@ -116,6 +119,11 @@ impl Along<'_> {
             )),
             false => Ok(()),
         }
+    }
+
+    /// Checks how the whole core is displaced.
+    pub(crate) fn check_arc(&self, whole: impl FnOnce() -> Run) -> Checked {
+        self.arc.map_or(Ok(()), |arc| arc.check(&whole()))
     }
 
     /// Returns the greatest factor that light is multiplied with.
@@ -197,20 +205,39 @@ impl Along<'_> {
         shared.core_lights().flat_map(of_light).collect()
     }
 
-    /// Returns a core with its dashes, and its lights.
-    pub(crate) fn lit(&self, whole: Run, flatness: Option<f64>, shared: &Shared<'_>) -> LitChain {
-        LitChain {
-            chain: self.chain(whole, flatness),
-            lights: self.lights(shared),
-        }
+    /// Returns a core with its dashes, then its branches, and their lights.
+    pub(crate) fn lit(
+        &self,
+        whole: Run,
+        flatness: Option<f64>,
+        shared: &Shared<'_>,
+    ) -> Vec<LitChain> {
+        let lights = self.lights(shared);
+        let of_arm = |runs| LitChain {
+            chain: Chain { runs, flatness },
+            lights: lights.clone(),
+        };
+        self.arms(whole).into_iter().map(of_arm).collect()
     }
 
+    /// Returns the same in one, without lights.
     pub(crate) fn chain(&self, whole: Run, flatness: Option<f64>) -> Chain {
-        let runs = match self.dashes {
-            Some(dashes) => dashes.cut(&whole),
+        let runs = self.arms(whole).concat();
+        Chain { runs, flatness }
+    }
+
+    /// Returns the runs of a core, then of each of its branches.
+    fn arms(&self, whole: Run) -> Vec<Vec<Run>> {
+        let arms = match self.arc {
+            Some(arc) => arc.displaced(whole),
             None => vec![whole],
         };
-        Chain { runs, flatness }
+        let length = arms.first().map_or(0.0, Run::length);
+        let dashed = arms.into_iter().map(|arm| match self.dashes {
+            Some(dashes) => dashes.cut(&arm, length),
+            None => vec![arm],
+        });
+        dashed.filter(|runs| !runs.is_empty()).collect()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Piece, Run};
+use super::Run;
 use crate::scene::values::{Checked, Fault, finite};
 
 /// Most dashes of a core.
@@ -71,8 +71,9 @@ impl Dashes {
         shares
     }
 
-    /// Cuts a whole core into its dashes.
-    pub(super) fn cut(&self, whole: &Run) -> Vec<Run> {
+    /// Cuts a run into its dashes, as those of a core of the length `core` that the run is a part of, or leaves: there
+    /// dashes go on along it.
+    pub(super) fn cut(&self, whole: &Run, core: f64) -> Vec<Run> {
         let lengths = whole.lengths();
         let length: f64 = lengths.iter().sum();
         let dash = |shares: [f64; 2]| {
@@ -81,7 +82,7 @@ impl Dashes {
             for (piece, own) in whole.pieces.iter().zip(&lengths) {
                 let [from, to] = shares.map(|share| (share * length - begin).clamp(0.0, *own));
                 if to - from > 1e-12 * length {
-                    pieces.push(part_between(piece, *own, from, to));
+                    pieces.push(piece.between(*own, from, to));
                 }
                 begin += own;
             }
@@ -91,23 +92,18 @@ impl Dashes {
                 fade: shares.map(|share| whole.fade(share)),
             }
         };
-        let dashes = self.shares().into_iter().map(dash);
+        let begin = whole.shares[0];
+        let of_run = |share: f64| ((share - begin) * core / length).clamp(0.0, 1.0);
+        let again = |shares: [f64; 2]| [shares, shares.map(|share| share + 1.0)];
+        let dashes = self.shares().into_iter().flat_map(again);
+        let dashes = dashes.map(|shares| dash(shares.map(of_run)));
         dashes.filter(|run| !run.pieces.is_empty()).collect()
     }
 }
 
-/// Returns the part of a piece of the length `whole` between two lengths.
-fn part_between(piece: &Piece, whole: f64, from: f64, to: f64) -> Piece {
-    let t = |length: f64| match length {
-        length if length <= 0.0 => 0.0,
-        length if length >= whole => 1.0,
-        length => piece.t_at_length(length),
-    };
-    piece.part(t(from), t(to))
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::Piece;
     use super::*;
     use glam::DVec3;
 
@@ -123,7 +119,11 @@ mod tests {
                 let last = run.pieces.len() - 1;
                 (run.pieces[0].at(0.0).x, run.pieces[last].at(1.0).x)
             };
-            dashes.cut(&whole).iter().map(ends).collect()
+            dashes
+                .cut(&whole, whole.length())
+                .iter()
+                .map(ends)
+                .collect()
         };
         assert_eq!(ends(Dashes::new(2)), [(0.0, 1.0), (2.0, 3.0)]);
         let moved = Dashes {

@@ -2,12 +2,16 @@
 //! core whose light is not the same all along it.
 
 mod along;
+mod arc;
 mod dashes;
+mod kinks;
+mod noise;
 mod piece;
 
 use glam::DVec3;
 
 pub(crate) use along::{Along, LightAlong, series_at};
+pub use arc::ElectricArc;
 pub use dashes::Dashes;
 pub(crate) use piece::Piece;
 
@@ -36,6 +40,11 @@ impl Run {
     /// Returns the length of each of its pieces.
     pub(crate) fn lengths(&self) -> Vec<f64> {
         self.pieces.iter().map(|piece| piece.length(1.0)).collect()
+    }
+
+    /// Returns its length, world units.
+    pub(crate) fn length(&self) -> f64 {
+        self.lengths().iter().sum()
     }
 
     /// Returns where it is of the whole core, from where it is of itself.

@@ -86,6 +86,9 @@ impl Piece {
         let mut t = length / self.length(1.0);
         for _ in 0..60 {
             let missing = length - self.length(t);
+            if missing == 0.0 {
+                break;
+            }
             (from, to) = if missing > 0.0 { (t, to) } else { (from, t) };
             let next = t + missing / self.velocity(t).length();
             let next = match next > from && next < to {
@@ -110,6 +113,16 @@ impl Piece {
             (c2 + 3.0 * c3 * from) * (width * width),
             c3 * width.powi(3),
         ])
+    }
+
+    /// Returns its part between two lengths; its own is `whole`.
+    pub(super) fn between(&self, whole: f64, from: f64, to: f64) -> Self {
+        let t = |length: f64| match length {
+            length if length <= 0.0 => 0.0,
+            length if length >= whole => 1.0,
+            length => self.t_at_length(length),
+        };
+        self.part(t(from), t(to))
     }
 
     /// Returns a ball in which it lies: its centre and radius.

@@ -59,6 +59,10 @@ impl Beam {
     fn check_series(&self) -> Checked {
         let along = self.along_keys();
         along.check(&self.shared(), self.radius)?;
+        if along.arc.is_some() {
+            let message = "displaces cores that end, and a beam does not: draw a [[segment]]";
+            return Err(Fault::new("arc", message));
+        }
         let is_even = along.is_even();
         match self.series_length {
             Some(length) => positive("series_length", length)?,
@@ -155,7 +159,7 @@ impl SourceKind for Beam {
         self.uneven_end().or(self.along_keys().uneven())
     }
 
-    fn as_chain(&self) -> Option<LitChain> {
+    fn as_chains(&self) -> Option<Vec<LitChain>> {
         let along = self.along_keys();
         let length = self.series_length?;
         if along.is_even() {
@@ -163,13 +167,13 @@ impl SourceKind for Beam {
         }
         let direction = self.direction.normalize();
         let last = self.tip + length * direction;
-        let mut lit = along.lit(Run::whole(vec![Piece::straight(self.tip, last)]), None, &self.shared());
-        lit.chain.runs.push(Run {
+        let mut arms = along.lit(Run::whole(vec![Piece::straight(self.tip, last)]), None, &self.shared());
+        arms.first_mut()?.chain.runs.push(Run {
             pieces: vec![Piece::straight(last, last + BEYOND_ALL * direction)],
             shares: [1.0, 1.0],
             fade: [1.0, 1.0],
         });
-        Some(lit)
+        Some(arms)
     }
 
     fn evened(self) -> Self {
@@ -238,6 +242,7 @@ impl TryFrom<BeamTable> for Beam {
             intensity: table.intensity.clone(),
             colors: table.colors.clone(),
             radii: table.radii.clone(),
+            arc: table.arc,
             dashes: table.dashes,
         } like own_keys(table.radius, table.shared())))
     }
@@ -258,6 +263,7 @@ impl From<Beam> for BeamTable {
             intensity: beam.intensity.clone(),
             colors: beam.colors.clone(),
             radii: beam.radii.clone(),
+            arc: beam.arc,
             dashes: beam.dashes,
         } like own_keys(beam.radius, beam.shared()))
     }

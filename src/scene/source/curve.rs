@@ -99,7 +99,7 @@ impl SourceKind for Curve {
         Ok(())
     }
 
-    fn as_chain(&self) -> Option<LitChain> {
+    fn as_chains(&self) -> Option<Vec<LitChain>> {
         let along = self.along_keys();
         let whole = || Run::whole(vec![Piece::quadratic(self.control_points)]);
         (!along.is_even()).then(|| along.lit(whole(), None, &self.shared()))

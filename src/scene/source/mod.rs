@@ -72,8 +72,9 @@ pub(crate) trait SourceKind: HasLight {
     /// Returns where its core is, of a source whose values are right.
     fn core(&self) -> Core;
 
-    /// Returns the chain that it is drawn as where light changes along its core; `None`: it is drawn as it is.
-    fn as_chain(&self) -> Option<LitChain> {
+    /// Returns the chains that it is drawn as where light changes along its core, whose lights add; `None`: it is drawn
+    /// as it is.
+    fn as_chains(&self) -> Option<Vec<LitChain>> {
         None
     }
 

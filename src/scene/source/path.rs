@@ -142,6 +142,7 @@ impl SourceKind for LightPath {
         self.check_points()?;
         let (along, shared) = (self.along_keys(), self.shared().adding_up());
         along.check(&shared, self.radius)?;
+        along.check_arc(|| Run::whole(self.pieces()))?;
         shared.check(brightness, &|light| along.strongest() * light.coefficient.abs())
     }
 
@@ -158,7 +159,7 @@ impl SourceKind for LightPath {
         Core::Chain(self.along_keys().chain(whole, self.flatness).rough_corners())
     }
 
-    fn as_chain(&self) -> Option<LitChain> {
+    fn as_chains(&self) -> Option<Vec<LitChain>> {
         let whole = Run::whole(self.pieces());
         Some(self.along_keys().lit(whole, self.flatness, &self.shared()))
     }

@@ -68,6 +68,7 @@ impl SourceKind for Segment {
         }
         let (along, shared) = (self.along(), self.shared().adding_up());
         along.check(&shared, self.radius)?;
+        along.check_arc(|| self.whole())?;
         let strongest = |light: &Light| along.strongest() * light.coefficient.abs();
         shared.check(brightness, &strongest)
     }
@@ -84,14 +85,17 @@ impl SourceKind for Segment {
     }
 
     fn core(&self) -> Core {
-        Core::between(self.from, self.to)
+        match self.arc {
+            Some(_) => Core::Chain(self.along().chain(self.whole(), None).rough_corners()),
+            None => Core::between(self.from, self.to),
+        }
     }
 
     fn uneven(&self) -> Option<&'static str> {
         self.along().uneven()
     }
 
-    fn as_chain(&self) -> Option<LitChain> {
+    fn as_chains(&self) -> Option<Vec<LitChain>> {
         let along = self.along();
         (!along.is_even()).then(|| along.lit(self.whole(), None, &self.shared()))
     }

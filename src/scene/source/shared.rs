@@ -50,7 +50,10 @@ macro_rules! source_struct {
                 /// linear between, at least 2; world units. A `peak` is met at each of them.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub radii: Option<Vec<f64>>,
-                /// Gaps that part the core.
+                /// Kinks and side arms of the core, as those of lightning.
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                pub arc: Option<$crate::scene::ElectricArc>,
+                /// Gaps that part the core, after it was displaced.
                 #[serde(default, skip_serializing_if = "Option::is_none")]
                 pub dashes: Option<$crate::scene::Dashes>,
             }
@@ -64,6 +67,7 @@ macro_rules! source_struct {
                     intensity: self.intensity.as_deref(),
                     colors: self.colors.as_deref(),
                     radii: self.radii.as_deref(),
+                    arc: self.arc,
                     dashes: self.dashes,
                     tapers: [0.0; 2],
                 }
@@ -72,6 +76,7 @@ macro_rules! source_struct {
             /// Multiplies the lengths among them.
             fn scale_along(&mut self, scale: f64) {
                 self.radii.iter_mut().flatten().for_each(|radius| *radius *= scale);
+                self.arc.iter_mut().for_each(|arc| arc.scale_by(scale));
             }
         }
     };
@@ -148,6 +153,7 @@ macro_rules! source {
             intensity: None,
             colors: None,
             radii: None,
+            arc: None,
             dashes: None,
         })
     };

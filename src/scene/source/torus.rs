@@ -107,6 +107,7 @@ impl SourceKind for Torus {
         self.check_angles()?;
         let (along, shared) = (self.along_keys(), self.shared().adding_up());
         along.check(&shared, self.radius)?;
+        along.check_arc(|| self.whole())?;
         shared.check(brightness, &|light| along.strongest() * light.coefficient.abs())
     }
 
@@ -125,7 +126,7 @@ impl SourceKind for Torus {
     }
 
     fn core(&self) -> Core {
-        if self.sweep.is_some() {
+        if self.sweep.is_some() || self.arc.is_some() {
             let chain = self.along_keys().chain(self.whole(), None);
             return Core::Chain(chain.rough_corners());
         }
@@ -140,7 +141,7 @@ impl SourceKind for Torus {
         self.along_keys().uneven()
     }
 
-    fn as_chain(&self) -> Option<LitChain> {
+    fn as_chains(&self) -> Option<Vec<LitChain>> {
         let is_ring = self.is_even() && !self.shared().adds_any_up();
         (!is_ring).then(|| self.along_keys().lit(self.whole(), None, &self.shared()))
     }

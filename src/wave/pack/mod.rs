@@ -151,14 +151,21 @@ macro_rules! define_sources {
                 let has_ends = scene.any_falloff(|it| it.ends());
                 let mut balls: [Vec<Row>; KIND_COUNT] = Default::default();
                 $(for source in &scene.$list {
-                    let chain = source.as_chain();
-                    match &chain {
-                        Some(chain) => path::pack_chain(chain, &mut self.paths, anchor, &mut self.rows),
-                        None => source.pack_into(&mut self.$list, anchor, &mut self.rows),
-                    }
-                    if has_ends {
-                        let core = chain.map_or_else(|| source.core().ball(), |lit| Some(lit.chain.ball()));
-                        self.add_balls(core, anchor, &mut balls);
+                    match source.as_chains() {
+                        Some(chains) => {
+                            for lit in &chains {
+                                path::pack_chain(lit, &mut self.paths, anchor, &mut self.rows);
+                                if has_ends {
+                                    self.add_balls(Some(lit.chain.ball()), anchor, &mut balls);
+                                }
+                            }
+                        }
+                        None => {
+                            source.pack_into(&mut self.$list, anchor, &mut self.rows);
+                            if has_ends {
+                                self.add_balls(source.core().ball(), anchor, &mut balls);
+                            }
+                        }
                     }
                 })*
                 if has_ends {

@@ -266,7 +266,7 @@ mod tests {
         let mut rows = Rows::default();
         rows.list.push([7.0; 4]);
         let mut list = Vec::new();
-        pack_chain(&path.as_chain().unwrap(), &mut list, &anchor, &mut rows);
+        pack_chain(&path.as_chains().unwrap()[0], &mut list, &anchor, &mut rows);
         let packed = list[0];
         assert!(packed.level_count > 3);
         for level in 0..packed.level_count as usize {

@@ -51,10 +51,8 @@ INLINE floatv path_far_step(const Parabola *const part, const floatv beyond) {
 #ifndef PATH_SLACK
 #if defined(COARSE) && !defined(SERIES) // light that changes along the core jumps with the nearest part
 #define PATH_SLACK 1e-3f
-#elif defined(SERIES)
-#define PATH_SLACK 1e-6f
 #else
-#define PATH_SLACK 4e-6f
+#define PATH_SLACK 4e-6f // with less, float32 lets parts that are equally near take turns
 #endif
 #endif
 
