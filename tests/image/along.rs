@@ -3,7 +3,7 @@
 
 use energywave::internals::{Integrand, Source, exact, integrate, sources};
 use energywave::scene::{
-    Camera, Curve, Group, LightPath, PathShape, Ray, Rotation, Sampling, Torus,
+    Camera, Curve, Group, LightPath, PathShape, Ray, Rotation, Sampling, Segment, Torus,
 };
 use energywave::{Renderer, Scene, reference};
 use glam::{DQuat, DVec3};
@@ -245,7 +245,7 @@ fn parts_at_a_sharp_corner_do_not_take_turns_until_the_steps_are_spent() {
     let scene = sampled(&at_tolerance(&scene, 1e-3), Sampling::Pixels);
     let truth = reference::render(&scene).unwrap();
     let lanes = common::device().lanes;
-    let mut worst = |options: &str| {
+    let worst = |options: &str| {
         let image = renderer(lanes, options).render(&scene).unwrap();
         let pairs = image.as_slice().iter().zip(truth.as_slice());
         pairs
@@ -254,4 +254,28 @@ fn parts_at_a_sharp_corner_do_not_take_turns_until_the_steps_are_spent() {
     };
     let (own, hasty) = (worst(""), worst("-DPATH_SLACK=1e-8f"));
     assert!(own < 1e-3 && hasty > 0.1, "{own:e} {hasty:e}");
+}
+
+#[test]
+fn a_core_that_thins_to_nothing_has_its_peak_where_it_is_thick_and_is_finite_where_it_is_not() {
+    let mut scene = scene();
+    scene.segments.push(Segment {
+        radii: Some(vec![0.0, 0.1, 0.0]),
+        reach: Some(0.4),
+        peak: Some(2.0),
+        ..Segment::new(v(-1.0, 0.0, 0.0), v(1.0, 0.0, 0.0))
+    });
+    let through = |x: f64| Ray::between(v(x, -2.0, 0.0), v(x, 2.0, 0.0));
+    let rays = [0.0, 0.5, -0.9, 1.0].map(through);
+    let mut renderer = renderer(common::device().lanes, "");
+    let found = renderer
+        .integrate(&at_tolerance(&scene, 1e-4), &rays)
+        .unwrap();
+    let light: Vec<f64> = found.iter().map(|[_, green, _]| *green).collect();
+    assert!((light[0] / 2.0 - 1.0).abs() < 1e-3, "{light:?}");
+    // Between the values the coefficient is linear, and light across a thinner core is brighter than that.
+    assert!(
+        light[1] > 1.5 && light[1] < 3.0 && light[2] > 0.1 && light[3] == 0.0,
+        "{light:?}"
+    );
 }

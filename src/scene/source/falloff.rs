@@ -89,6 +89,9 @@ impl Falloff {
             radius,
             reach,
         } = *self;
+        if radius == 0.0 {
+            return f64::INFINITY;
+        }
         let Some(reach) = reach else {
             return match profile {
                 Profile::Inverse | Profile::Smeared | Profile::Convolution => f64::INFINITY,
