@@ -98,6 +98,20 @@ INLINE Ray open_ray(const Screen *const screen, const uintv column, const uintv 
     return make_ray(origin, origin, stretch, splat(view->ray_length), screen->softening2);
 }
 
+// Returns rays that begin so many pixels farther right and below, and end where the others do.
+INLINE Ray moved_ray(const View *const view, const Ray *const ray, const floatv right, const floatv below) {
+    const fine3v row_step = fine3(view->row_step, view->row_step_rest);
+    const fine3v column_step = fine3(view->column_step, view->column_step_rest);
+    const fine3v aside = fine_fma3(column_step, to_finev(right), ray->fine_origin);
+    const fine3v origin = fine_fma3(row_step, to_finev(below), aside);
+    const float3v toward = from_fine3(origin);
+    const floatv stretch = 0.5f * view->ray_length * twice_inverse_sqrt_(dot3(toward, toward));
+    Ray moved = make_ray(origin, origin, stretch, ray->length, 0.0f);
+    moved.softening2 = ray->softening2;
+    moved.end = ray->end;
+    return moved;
+}
+
 // Returns the rays through the centres of pixels.
 INLINE Ray ray_through(const Screen *const screen, const uintv column, const uintv row) {
     Ray ray = open_ray(screen, column, row);

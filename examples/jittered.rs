@@ -8,7 +8,7 @@
 use std::path::PathBuf;
 
 use energywave::image::compare;
-use energywave::scene::Method;
+use energywave::scene::{Antialias, Method};
 use energywave::{Device, Error, RadianceImage, Renderer, Scene};
 
 fn main() -> energywave::Result<()> {
@@ -17,6 +17,7 @@ fn main() -> energywave::Result<()> {
     let mut renderer = Renderer::new(&Device::best()?)?;
     let mut draw = |method| {
         scene.integration.method = method;
+        scene.integration.antialias = Antialias::None;
         renderer.render(&scene)
     };
     let truth = draw(Method::exact(1e-5))?;

@@ -122,6 +122,7 @@ pub fn program_text(program: &ProgramTask<'_>) -> (String, String) {
         reduced: wave::Reduced::Sum,
         has_series: program.has_series,
         has_ends: program.has_shapes && program.kernel == "tiles",
+        has_footprints: program.tolerance.is_some() && program.kernel != "trace",
         has_depth: program.has_depth,
         film: FilmFormat::Floats,
         rays: match program.kernel {

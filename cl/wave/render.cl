@@ -17,6 +17,6 @@ __kernel void render(const View view, const FilmPart part, const Integrand integ
     const Screen screen = {&view, depths, integrand.softening2};
     const Ray ray = pixel_ray(&screen, part.first + begin);
     const float3v before = gathered_light(&part, begin, pixels);
-    const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch, before);
+    const float3v radiance = radiance_along(&view, &ray, &sources, &quadrature, &launch, before);
     store_pixels(&part, begin, radiance, FILM_ARGUMENT);
 }

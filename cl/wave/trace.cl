@@ -35,6 +35,6 @@ __kernel void trace(const FilmPart part, const Integrand integrand, const Launch
     const Quadrature quadrature =
         quadrature_of(&integrand, nodes, counts + launch.first_count, ray.length, part.first + index);
     const float3v before = gathered_light(&part, begin, pixels);
-    const float3v radiance = radiance_along(&ray, &sources, &quadrature, &launch, before);
+    const float3v radiance = radiance_along(0, &ray, &sources, &quadrature, &launch, before);
     store_pixels(&part, begin, radiance, FILM_ARGUMENT);
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use energywave::image::{DepthAlong, DepthImage, DepthOptions, ImageSize};
-use energywave::scene::{Method, MethodKeys, Sampling, Scene};
+use energywave::scene::{Antialias, Method, MethodKeys, Sampling, Scene};
 use energywave::{Error, RendererOptions, SlowStart};
 
 use super::warn;
@@ -188,6 +188,9 @@ pub struct Overrides {
     /// Where the exact method takes integrals [default: the scene's, else tiles]; chooses --method exact
     #[arg(long, requires = "scene")]
     pub sampling: Option<SamplingName>,
+    /// Which rays a pixel of the exact method stands for [default: the scene's, else footprint]
+    #[arg(long, value_enum)]
+    pub antialias: Option<AntialiasName>,
     /// Depth image (.exr) of the scene's size, which hides the light behind it
     #[arg(long, value_name = "FILE", requires = "scene")]
     pub depth: Option<PathBuf>,
@@ -233,6 +236,23 @@ pub enum DepthAlongName {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum AntialiasName {
+    /// All that pass its square: their mean
+    Footprint,
+    /// The one through its centre, as in the papers
+    None,
+}
+
+impl From<AntialiasName> for Antialias {
+    fn from(name: AntialiasName) -> Self {
+        match name {
+            AntialiasName::Footprint => Self::Footprint,
+            AntialiasName::None => Self::None,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SamplingName {
     /// At every pixel
     Pixels,
@@ -266,6 +286,7 @@ impl Overrides {
             && self.divisions.is_none()
             && self.tolerance.is_none()
             && self.sampling.is_none()
+            && self.antialias.is_none()
             && self.depth.is_none()
     }
 
@@ -290,6 +311,9 @@ impl Overrides {
             scene.depth = Some(self.open_depth(file, scene.image)?);
         }
         scene.integration.method = self.method(scene.integration.method, keys)?;
+        if let Some(name) = self.antialias {
+            scene.integration.antialias = name.into();
+        }
         Ok(())
     }
 

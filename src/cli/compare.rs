@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use energywave::papers::{Accuracy, accuracies};
-use energywave::scene::Method;
+use energywave::scene::{Antialias, Method};
 use energywave::{Device, Renderer};
 use serde::Serialize;
 
@@ -46,6 +46,7 @@ impl From<Accuracy> for Row {
 pub fn run(arguments: &CompareArguments) -> Outcome {
     let scene = read_scene(&arguments.scene, |scene, _| {
         scene.image = arguments.size.unwrap_or(scene.image);
+        scene.integration.antialias = Antialias::None; // methods are compared along rays
         Ok(())
     })?;
     tell_depths(&scene, arguments.quiet);

@@ -8,7 +8,7 @@ use super::occluders::tetrahedra;
 use crate::error::{Error, Result};
 use crate::image::ImageSize;
 use crate::reference;
-use crate::scene::{Beam, BeamEnd, Camera, Measure, Profile, Scene};
+use crate::scene::{Antialias, Beam, BeamEnd, Camera, Measure, Profile, Scene};
 
 /// A cell of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,6 +64,7 @@ impl Cell2010 {
             height: self.resolution,
         };
         scene.integration.measure = Measure::Length;
+        scene.integration.antialias = Antialias::None;
         scene.beams.push(Beam {
             tip: DVec3::new(0.0, 0.0, 70.0),
             coefficient: 30.0,

@@ -103,6 +103,8 @@ pub struct Integration {
     pub measure: Measure,
     /// What a pixel has of the integrals.
     pub reduction: Reduction,
+    /// Which rays a pixel stands for.
+    pub antialias: Antialias,
     /// Softening radius epsilon, world units: the squared distance to every core grows by its square.
     pub softening: f64,
 }
@@ -113,12 +115,21 @@ impl Default for Integration {
             method: Method::default(),
             measure: Measure::Length,
             reduction: Reduction::Sum,
+            antialias: Antialias::default(),
             softening: 0.0,
         }
     }
 }
 
 impl Integration {
+    /// Returns whether pixels are means over their squares. Sums of samples are for comparison with the paper, and
+    /// roots of integrals do not add up: their pixels are what one ray gets.
+    pub(crate) fn has_footprints(&self) -> bool {
+        self.antialias == Antialias::Footprint
+            && matches!(self.method, Method::Exact { .. })
+            && self.reduction == Reduction::Sum
+    }
+
     /// Returns what the light of a ray of this length, world units, is multiplied with if it was taken over s.
     pub(crate) fn scale(&self, length: f64) -> f64 {
         match self.measure {
@@ -279,6 +290,19 @@ pub enum Measure {
     Parameter,
     /// Length in world units: `|E - S|` times as much (2010, 2006).
     Length,
+}
+
+/// Which rays a pixel stands for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Antialias {
+    /// All that pass its square: the pixel is the mean of their light, so that thin cores that move do not flicker.
+    /// Where a method other than `exact` takes the integrals, or [`Reduction::Rms`] their roots, as [`Antialias::None`].
+    #[default]
+    Footprint,
+    /// The one through its centre, as in the papers.
+    None,
 }
 
 /// What a pixel has of the integrals along its ray.

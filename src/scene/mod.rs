@@ -38,7 +38,7 @@ pub use depth_report::DepthReport;
 pub use file::MethodKeys;
 pub use group::{Group, Repeat, Rotation};
 pub use integration::{
-    Absorption, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
+    Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
 };
 pub use list::List;
 #[cfg(feature = "files")]

@@ -109,9 +109,13 @@ impl ViewPlane {
     /// Makes the ray through the centre of a pixel.
     #[must_use]
     pub fn ray(&self, column: u32, row: u32) -> Ray {
-        let to_plane = self.first_pixel
-            + self.column_step * f64::from(column)
-            + self.row_step * f64::from(row);
+        self.ray_at(f64::from(column), f64::from(row))
+    }
+
+    /// Makes the ray through a place of the plane, in pixels from the centre of the first one.
+    #[must_use]
+    pub fn ray_at(&self, column: f64, row: f64) -> Ray {
+        let to_plane = self.first_pixel + self.column_step * column + self.row_step * row;
         Ray {
             origin: self.eye + to_plane,
             span: to_plane.normalize() * self.ray_length,

@@ -29,6 +29,8 @@ pub(crate) struct Task {
     pub has_series: bool,
     /// Tiles: whether the light of any ends.
     pub has_ends: bool,
+    /// Whether pixels are means over their squares.
+    pub has_footprints: bool,
     /// Whether depths end the rays.
     pub has_depth: bool,
     pub film: FilmFormat,
@@ -186,6 +188,9 @@ fn task_definitions(workers: u32, counts_samples: bool, task: &Task, rule: &Rule
     }
     if task.has_ends {
         definitions += " -D ENDS";
+    }
+    if task.has_footprints {
+        definitions += " -D FOOTPRINT";
     }
     if task.has_depth {
         definitions += " -D DEPTH";

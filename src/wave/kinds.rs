@@ -6,6 +6,10 @@ use crate::scene::kinds::{KIND_COUNT, for_each_kind};
 
 /// The wave's own files; those of the kinds are in the rows of the table.
 const FILES: &[SourceFile<'static>] = embed!(
+    "wave/footprint/closest.h",
+    "wave/footprint/footprint.h",
+    "wave/footprint/mean.h",
+    "wave/footprint/seen.h",
     "wave/quadrature/adaptive.h",
     "wave/quadrature/closed_form.h",
     "wave/quadrature/closed_form_shape.h",

@@ -206,6 +206,7 @@ impl Wave {
             kinds: self.packed.sources.counts().map(|count| count > 0),
             has_series: self.packed.sources.rows.has_series,
             has_ends: self.packed.sources.rows.first_balls.is_some() && rays == Rays::Tiles,
+            has_footprints: scene.integration.has_footprints() && rays != Rays::Listed,
             has_depth: scene.depth.is_some() && rays != Rays::Listed,
             film,
             rays,

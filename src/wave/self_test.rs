@@ -14,8 +14,8 @@ use crate::opencl::{Compute, Film, FilmFormat, Pixel, Program};
 use crate::reference::Tracer;
 use crate::scene::kinds::for_each_kind;
 use crate::scene::{
-    Absorption, Camera, Decay, Integration, Measure, Method, Profile, Reduction, Sampling, Scene,
-    SourceKind,
+    Absorption, Antialias, Camera, Decay, Integration, Measure, Method, Profile, Reduction,
+    Sampling, Scene, SourceKind,
 };
 use crate::threads;
 
@@ -24,6 +24,9 @@ const STRIDE: usize = 97;
 
 /// The relative error that a pixel may have even if the tolerance is smaller: what float32 and half floats lose.
 const LEAST_LIMIT: f64 = 1e-3;
+
+/// That of a pixel next to a core, which is a mean over its square.
+const MEAN_LIMIT: f64 = 2e-2;
 
 /// Two tiles wide and high, with room for some that are smooth.
 const SIZE: ImageSize = ImageSize {
@@ -72,6 +75,10 @@ impl Wave {
         let compared: Vec<usize> = (0..found.len()).step_by(STRIDE).collect();
         let wrong = threads::find_any(&compared, |index| {
             let expected = tracer.pixel(scene, &plane, index);
+            let limit = match tracer.is_mean(scene, &plane, index) {
+                true => MEAN_LIMIT,
+                false => limit,
+            };
             let is_right = agrees(found[index], expected, limit);
             (!is_right).then(|| {
                 format!(
@@ -201,6 +208,10 @@ fn integration(task: Task, softening: f64) -> Integration {
     Integration {
         method,
         softening,
+        antialias: match task.has_footprints {
+            true => Antialias::Footprint,
+            false => Antialias::None,
+        },
         measure: Measure::Parameter, // as listed rays are
         reduction: match task.reduced {
             Reduced::Sum => Reduction::Sum,

@@ -16,8 +16,8 @@ use std::path::PathBuf;
 use energywave::image::{DepthAlong, DepthImage, Difference, ImageSize, compare};
 use energywave::internals::{Compute, OpenClDevice, discover, with_compiler_options};
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Measure, Method, MethodKeys, Profile, Sampling,
-    Sphere, Torus,
+    Antialias, Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Measure, Method, MethodKeys, Profile,
+    Sampling, Sphere, Torus,
 };
 use energywave::{Device, DeviceType, RadianceImage, Renderer, RendererOptions, Scene, reference};
 use glam::DVec3;
@@ -88,6 +88,7 @@ pub fn empty_scene(width: u32, height: u32) -> Scene {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.3, -3.5, 2.0), DVec3::ZERO));
     scene.camera.ray_length = Some(far_beyond_target(&scene.camera));
     scene.integration.measure = Measure::Parameter;
+    scene.integration.antialias = Antialias::None;
     scene.image = ImageSize { width, height };
     scene.integration.method = Method::simpson(DIVISIONS);
     scene.decay = Some(Decay::new(0.1, 0.1));
@@ -306,6 +307,7 @@ pub fn figures(size: u32, method: fn(&MethodKeys) -> Method) -> Vec<(String, Sce
     let figure = |path: PathBuf| {
         let by_method = |scene: &mut Scene, keys: &MethodKeys| {
             scene.integration.method = method(keys);
+            scene.integration.antialias = Antialias::None;
             Ok(())
         };
         let mut scene = Scene::from_file_with(&path, by_method).unwrap();

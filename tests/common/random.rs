@@ -3,7 +3,8 @@
 use energywave::Scene;
 use energywave::image::ImageSize;
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Measure, Method, Profile, Sphere, Torus,
+    Antialias, Beam, BeamEnd, Camera, Curve, Cylinder, Decay, Measure, Method, Profile, Sphere,
+    Torus,
 };
 use fastrand::Rng;
 use glam::DVec3;
@@ -49,6 +50,7 @@ pub fn random_view(random: &mut Rng, size: u32) -> Scene {
         height: size,
     };
     scene.integration.method = Method::default();
+    scene.integration.antialias = Antialias::None;
     if random.u32(0..4) > 0 {
         scene.decay = Some(Decay::new(
             spread(random, 0.1, 1.0),

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::common::{device, difference, meets, renderer, tolerance};
+use energywave::scene::Antialias;
 use energywave::{Scene, reference};
 
 fn folder() -> PathBuf {
@@ -13,7 +14,8 @@ fn folder() -> PathBuf {
 
 /// Returns how far a scene is off when its kernels are built with these options, and whether it meets its tolerance.
 fn drawn(path: &Path, options: &str) -> (String, bool) {
-    let scene = Scene::from_file(path).unwrap();
+    let mut scene = Scene::from_file(path).unwrap();
+    scene.integration.antialias = Antialias::None;
     let image = renderer(device().lanes, options).render(&scene).unwrap();
     let found = difference(&image, &reference::render(&scene).unwrap());
     let is_met = meets(&found, tolerance(&scene));

@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::random::{KINDS, Kind, add_source, random_view};
 use crate::common::{WORST_PIXEL, at_tolerance, difference, lane_widths, renderer};
 use energywave::image::ImageSize;
-use energywave::scene::{Camera, Curve, Decay, Measure, Method, Profile};
+use energywave::scene::{Antialias, Camera, Curve, Decay, Measure, Method, Profile};
 use energywave::{Scene, reference};
 use glam::DVec3;
 
@@ -13,6 +13,7 @@ fn through_a_core(kind: Kind) -> Scene {
     let mut camera = Camera::new(DVec3::new(0.0, -3.0, 0.0), DVec3::ZERO);
     camera.ray_length = Some(9.0);
     let mut scene = Scene::new(camera);
+    scene.integration.antialias = Antialias::None;
     scene.integration.method = Method::exact(1e-4);
     scene.integration.measure = Measure::Parameter;
     scene.decay = Some(Decay::new(0.2, 0.3));

@@ -17,6 +17,7 @@ mod exact; // holds the method `exact` to every tolerance
 mod fading; // fades light by every power, and absorbs it
 mod fading_forms; // holds the reference to closed forms of points and lines that fade
 mod figures; // draws every scene by every method in the form of the device
+mod footprint; // compares pixels with the means of many rays
 mod hard_scenes; // takes the method `exact` through cores, along them, and to extreme numbers
 mod images; // bounds the worst pixel of the Simpson rule
 mod jittered; // holds stratified samples to their definition, and shows what they gain

@@ -1,7 +1,7 @@
 //! Every preset is drawn as the reference draws it, white where it is hot and black where nothing is.
 
 use energywave::image::ImageSize;
-use energywave::scene::Preset;
+use energywave::scene::{Antialias, Preset};
 use energywave::{RadianceImage, Renderer, Scene, reference};
 
 use crate::common::{self, difference, renderer};
@@ -28,6 +28,7 @@ fn scenes() -> impl Iterator<Item = (&'static str, Scene)> {
     Preset::ALL.iter().map(|preset| {
         let mut scene = Scene::from_toml(preset.text).unwrap();
         scene.image = SIZE;
+        scene.integration.antialias = Antialias::None;
         // Of so few pixels a hundredth is much of a thin core; 1080 rows have chords as short as these.
         for path in scene.paths.iter_mut() {
             path.flatness = Some(FLATNESS);

@@ -6,8 +6,9 @@ use crate::common;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, ToneMap};
 use energywave::internals::KINDS;
 use energywave::scene::{
-    Beam, BeamEnd, Camera, Curve, Cylinder, Dashes, Decay, ElectricArc, Integration, Layer,
-    LightPath, Measure, Method, PathShape, Profile, Reduction, Sampling, Segment, Sphere, Torus,
+    Antialias, Beam, BeamEnd, Camera, Curve, Cylinder, Dashes, Decay, ElectricArc, Integration,
+    Layer, LightPath, Measure, Method, PathShape, Profile, Reduction, Sampling, Segment, Sphere,
+    Torus,
 };
 use energywave::{ErrorKind, Scene};
 use fastrand::Rng;
@@ -200,6 +201,7 @@ fn rich_scenes() -> Vec<Scene> {
         };
         scene.decay = (index % 3 != 0).then(|| Decay::new(number(random), number(random)));
         scene.integration = Integration {
+            antialias: Antialias::None,
             method,
             measure: [Measure::Parameter, Measure::Length][index % 2],
             reduction: Reduction::Sum, // of as many sources

@@ -6,6 +6,7 @@
 // Watanabe 2010, eq. 10-12).
 #pragma once
 #include "../../view.h"
+#include "../footprint/closest.h"
 #include "../quadrature/quadrature.h"
 #include "../quadrature/stretch.h"
 #include "../tiles/clearance.h"
@@ -117,3 +118,15 @@ Clearance beam_clearance(const Ray *const ray, const Sources *const sources, con
     clearance.seen[2] = select(splat(0.0f), jump, height_at(&path.height, ray->end) < 0.0f);
     return clearance;
 }
+
+#ifdef FOOTPRINT
+Closest beam_closest(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Beam *const beam = &sources->beam_list[index];
+    const beam_path path = beam_along(ray, sources, index);
+    const floatv s = path.to_line.nearest;
+    const floatv ahead = path.has_taper ? fma(path.taper_slope, s, path.taper) : height_at(&path.height, s);
+    const Closest to_line = closest_to_line(ray, fine3(beam->point, beam->point_rest), uniform3(beam->direction), s);
+    const Closest to_tip = closest_to_point(ray, fine3(beam->tip, beam->tip_rest), path.to_tip.nearest);
+    return select_closest(to_tip, to_line, ahead >= 0.0f);
+}
+#endif

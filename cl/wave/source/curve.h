@@ -1,6 +1,7 @@
 // Quadratic curve (Watanabe, Abe, Konno 2015, eq. 8-17): its struct, what it says of itself, and how clear of it a ray
 // is. The field along a ray is in curve/field.h, where it peaks in curve/peaks.h, where a ray is cut in curve/panels.h.
 #pragma once
+#include "../footprint/closest.h"
 #include "../quadrature/quadrature.h"
 #include "../tiles/clearance.h"
 #include "names.h"
@@ -62,6 +63,29 @@ Clearance curve_clearance(const Ray *const ray, const Sources *const sources, co
     }
     return clearance;
 }
+
+#ifdef FOOTPRINT
+Closest curve_closest(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Curve *const curve = &sources->curve_list[index];
+    const curve_peaks peaks = curve_peaks_along(ray, sources, index);
+    const curve_path *const path = &peaks.path;
+    const curve_sight first = curve_seen_from(path, clamp(peaks.first, 0.0f, ray->end));
+    const curve_sight second = curve_seen_from(path, clamp(peaks.second, 0.0f, ray->end));
+    const floatv per_first = inverse(fma(ray->stretch, first.s, splat(1.0f)));
+    const floatv per_second = inverse(fma(ray->stretch, second.s, splat(1.0f)));
+    const intv is_second = second.distance2 * per_second * per_second < first.distance2 * per_first * per_first;
+    const floatv s = select(first.s, second.s, is_second), x = select(first.x, second.x, is_second);
+    const curve_point point = curve_point_at(path, s);
+    const curve_offset offset = offset_from_curve(path, &point, x);
+    const float3v along = uniform3(curve->along), across = uniform3(curve->across), normal = uniform3(curve->normal);
+    const float3v in_plane = fma3(across, offset.across, scale3(along, offset.along));
+    const intv is_end = fabs(x) >= 0.5f;
+    const float3v tangent = fma3(across, curve_velocity_across(path, x), scale3(along, splat(path->velocity_along)));
+    const Closest closest = {s, scale3(fma3(normal, point.normal, in_plane), splat(-0.5f)),
+                             select3(tangent, uniform3((float4)(0.0f)), is_end), splat(0.0f)};
+    return closest;
+}
+#endif
 
 #ifdef EXACT
 #define KIND curve

@@ -2,6 +2,7 @@
 // its integral in closed form.
 #pragma once
 #include "../../view.h"
+#include "../footprint/closest.h"
 #include "../quadrature/quadrature.h"
 #include "../quadrature/stretch.h"
 #include "../tiles/clearance.h"
@@ -50,3 +51,12 @@ Clearance cylinder_clearance(const Ray *const ray, const Sources *const sources,
     const cylinder_path path = cylinder_along(ray, sources, index);
     return quadratic_clearance(ray, &path.distance2, &path.profile, pixel_step);
 }
+
+#ifdef FOOTPRINT
+Closest cylinder_closest(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Cylinder *const cylinder = &sources->cylinder_list[index];
+    const cylinder_path path = cylinder_along(ray, sources, index);
+    return closest_to_line(ray, fine3(cylinder->point, cylinder->point_rest), uniform3(cylinder->direction),
+                           path.distance2.nearest);
+}
+#endif

@@ -10,6 +10,7 @@
 #define KIND_integral JOIN(KIND, _integral)
 #define KIND_integral_of JOIN(KIND, _integral_of)
 #define KIND_clearance JOIN(KIND, _clearance)
+#define KIND_closest JOIN(KIND, _closest) // -D FOOTPRINT
 
 // What a kind says of itself: #define curve_has_kinks 1. A kind that says nothing does not have it.
 #define KIND_HAS(what) JOIN(KIND, _has_##what)
@@ -47,3 +48,4 @@
 #define KIND_two_panels JOIN(KIND, _two_panels)
 #define KIND_at_end JOIN(KIND, _at_end) // ../tiles/settle.h
 #define KIND_settle JOIN(KIND, _settle)
+#define KIND_seen JOIN(KIND, _seen) // ../footprint/seen.h

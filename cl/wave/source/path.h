@@ -3,6 +3,7 @@
 // is there in several levels, the first with the most pieces: rays that pass it farther away need fewer.
 #pragma once
 #include "../../view.h"
+#include "../footprint/closest.h"
 #include "../quadrature/quadrature.h"
 #include "../quadrature/stretch.h"
 #include "../tiles/clearance.h"
@@ -204,3 +205,29 @@ Clearance path_clearance(const Ray *const ray, const Sources *const sources, con
     const floatv distance = max(0.5f * twice_sqrt(max(nearest.distance2, 1e-36f)) - roughest.off, 0.0f);
     return clear_by(ray, pixel_step, nearest.s, fma(4.0f * distance, distance, path.profile.softening2), &path.profile);
 }
+
+#ifdef FOOTPRINT
+Closest path_closest(const Ray *const ray, const Sources *const sources, const uint index) {
+    const path_path path = path_along(ray, sources, index);
+    const path_rows *const rows = &path.rows;
+    const floatv s = path_closest_approach(rows, ray).s;
+    const path_spot spot = path_spot_at(ray, s);
+    const path_groups groups = path_all_groups(rows);
+    const path_place place = path_nearest(rows, &groups, &spot);
+    const float3v from_corner = add3(subtract3(spot.at, path_gather3(rows, place.corner, 0)),
+                                     subtract3(spot.rest, path_gather3(rows, place.corner, 1)));
+    const float3v direction = path_gather3(rows, place.corner, 2);
+    const float3v from_core =
+        fma3(direction, select(splat(0.0f), -dot3(from_corner, direction), place.is_line), from_corner);
+    // At a corner the core is level with the ray; not at its ends.
+    const intv last = (intv)((int)rows->corner_count - 1);
+    const intv is_end = (place.corner == 0) | (place.corner == last);
+    const float3v level = select3(cross3(from_core, ray->span), uniform3((float4)(0.0f)), is_end);
+    Closest closest = {s, scale3(from_core, splat(-1.0f)), select3(level, direction, place.is_line), splat(0.0f)};
+#ifdef SERIES
+    const path_light light = path_light_at(rows, path.source->is_even, &place, spot.at);
+    closest.thickness2 = 0.25f * light.radius * light.radius;
+#endif
+    return closest;
+}
+#endif

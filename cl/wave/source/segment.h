@@ -3,6 +3,7 @@
 // closed form. With -D CONVOLUTION there are segments all of whose points are added up (convolution.h).
 #pragma once
 #include "../../view.h"
+#include "../footprint/closest.h"
 #include "../quadrature/quadrature.h"
 #include "../quadrature/stretch.h"
 #include "../tiles/clearance.h"
@@ -160,3 +161,17 @@ Clearance segment_clearance(const Ray *const ray, const Sources *const sources, 
                                         quadratic_clearance(ray, &path.to_last, &path.profile, pixel_step));
     return select_clearance(of_ends, nearer_of(of_line, of_ends), is_beside);
 }
+
+#ifdef FOOTPRINT
+Closest segment_closest(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Segment *const segment = &sources->segment_list[index];
+    const segment_path path = segment_along(ray, sources, index);
+    const floatv s = path.to_line.nearest;
+    const intv is_before = height_at(&path.over_first, s)<0.0f, is_beyond = height_at(&path.over_last, s)> 0.0f;
+    const Closest to_line =
+        closest_to_line(ray, fine3(segment->point, segment->point_rest), uniform3(segment->direction), s);
+    const Closest to_first = closest_to_point(ray, fine3(segment->from, segment->from_rest), path.to_first.nearest);
+    const Closest to_last = closest_to_point(ray, fine3(segment->to, segment->to_rest), path.to_last.nearest);
+    return select_closest(select_closest(to_line, to_first, is_before), to_last, is_beyond);
+}
+#endif

@@ -1,6 +1,7 @@
 // Sphere: 1 / |P - M| (Watanabe, Abe, Konno 2015, eq. 2), or its square; its integral in closed form.
 #pragma once
 #include "../../view.h"
+#include "../footprint/closest.h"
 #include "../quadrature/quadrature.h"
 #include "../quadrature/stretch.h"
 #include "../tiles/clearance.h"
@@ -47,3 +48,11 @@ Clearance sphere_clearance(const Ray *const ray, const Sources *const sources, c
     const sphere_path path = sphere_along(ray, sources, index);
     return quadratic_clearance(ray, &path.distance2, &path.profile, pixel_step);
 }
+
+#ifdef FOOTPRINT
+Closest sphere_closest(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Sphere *const sphere = &sources->sphere_list[index];
+    const sphere_path path = sphere_along(ray, sources, index);
+    return closest_to_point(ray, fine3(sphere->center, sphere->center_rest), path.distance2.nearest);
+}
+#endif

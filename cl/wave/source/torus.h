@@ -9,6 +9,7 @@
 #include "../../fine.h"
 #include "../../roots.h"
 #include "../../view.h"
+#include "../footprint/closest.h"
 #include "../quadrature/panel.h"
 #include "../quadrature/quadrature.h"
 #include "../tiles/clearance.h"
@@ -308,6 +309,19 @@ INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
     return field_of(&near->profile, splat(0.0f), per_distance);
 }
 
+#ifdef SHAPES
+// Finds where the ray comes closest to the ring, which far from it is not where it peaks, by Gauss-Newton steps, and
+// returns the squared distance there.
+INLINE floatv torus_least_offset2(const torus_peaks *const peaks, floatv *const s) {
+    floatv slope, speed2;
+    for (int step = 0; step < 4; ++step) {
+        torus_offset2(&peaks->path, *s, &slope, &speed2);
+        *s = clamp(fma(-0.5f * slope, inverse(max(speed2, 1e-30f)), *s), 0.0f, peaks->ray->end);
+    }
+    return torus_offset2(&peaks->path, *s, &slope, &speed2);
+}
+#endif
+
 Clearance torus_clearance(const Ray *const ray, const Sources *const sources, const uint index,
                           const float pixel_step) {
     const torus_peaks peaks = torus_peaks_along(ray, sources, index);
@@ -315,21 +329,39 @@ Clearance torus_clearance(const Ray *const ray, const Sources *const sources, co
     Clearance clearance = nearer_of(peak_clearance(ray, peaks.first, profile, pixel_step),
                                     peak_clearance(ray, peaks.second, profile, pixel_step));
 #ifdef SHAPES
-    // Far from the ring its peaks are not where the ray comes closest to it: Gauss-Newton steps find that.
     floatv s[2] = {clamp(peaks.first.re, 0.0f, ray->end), clamp(peaks.second.re, 0.0f, ray->end)};
     for (int k = 0; k < 2 && HAS_END(profile); ++k) {
-        floatv slope, speed2, distance2;
-        for (int step = 0; step < 4; ++step) {
-            torus_offset2(&peaks.path, s[k], &slope, &speed2);
-            s[k] = clamp(fma(-0.5f * slope, inverse(max(speed2, 1e-30f)), s[k]), 0.0f, ray->end);
-        }
-        distance2 = torus_offset2(&peaks.path, s[k], &slope, &speed2);
+        const floatv distance2 = torus_least_offset2(&peaks, &s[k]);
         const Clearance found = clear_by(ray, pixel_step, s[k], distance2 + profile->softening2, profile);
         clearance.to_light = k == 0 ? found.to_light : min(clearance.to_light, found.to_light);
     }
 #endif
     return clearance;
 }
+
+#ifdef FOOTPRINT
+Closest torus_closest(const Ray *const ray, const Sources *const sources, const uint index) {
+    __global const Torus *const torus = &sources->torus_list[index];
+    const torus_peaks peaks = torus_peaks_along(ray, sources, index);
+    floatv s[2] = {clamp(peaks.first.re, 0.0f, ray->end), clamp(peaks.second.re, 0.0f, ray->end)};
+    floatv beside[2] = {peaks.first.im, peaks.second.im};
+#ifdef SHAPES
+    for (int k = 0; k < 2 && HAS_END(&peaks.path.profile); ++k)
+        beside[k] = sqrt(torus_least_offset2(&peaks, &s[k]));
+#endif
+    for (int k = 0; k < 2; ++k)
+        beside[k] *= inverse(fma(ray->stretch, s[k], splat(1.0f)));
+    s[0] = select(s[0], s[1], beside[1] < beside[0]);
+    const float3v axis = uniform3(torus->axis);
+    const fine3v from_center = fine_between(ray, s[0], torus->center, torus->center_rest);
+    const float3v at = from_fine3(from_center);
+    const float3v in_plane = fma3(axis, -dot3(at, axis), at);
+    const float3v outward = scale3(in_plane, 0.5f * twice_inverse_sqrt_(max(dot3(in_plane, in_plane), 1e-36f)));
+    const Closest closest = {s[0], fma3(outward, splat(torus->major_radius), scale3(at, splat(-1.0f))),
+                             cross3(axis, outward), splat(0.0f)};
+    return closest;
+}
+#endif
 
 #ifdef EXACT
 #define KIND torus

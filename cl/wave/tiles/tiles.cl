@@ -172,7 +172,7 @@ INLINE uint settle_sources(const TileTask *const task, const Tile *const tile, _
             const uint i = begin + lowest_bit(left);                                                                   \
             if (PASSES_BY(number, i, cone))                                                                            \
                 continue;                                                                                              \
-            const floatv light = reduced(kind##_integral(ray, task->sources, i, task->quadrature));                    \
+            const floatv light = LIGHT_OF(kind, task->screen->view, ray, task->sources, i, task->quadrature);          \
             radiance = fma3(uniform3(kind##_emission(task->sources, i)), light, radiance);                             \
             *integrals += LANES;                                                                                       \
         }                                                                                                              \

@@ -2,7 +2,7 @@
 
 use energywave::Scene;
 use energywave::image::{DepthAlong, DepthImage, ImageSize};
-use energywave::scene::{Camera, Decay, Measure, Method};
+use energywave::scene::{Antialias, Camera, Decay, Measure, Method};
 use glam::DVec3;
 
 use super::dice::Dice;
@@ -43,6 +43,7 @@ pub fn empty(dice: &mut Dice) -> Scene {
     let height = if dice.one_in(3) { size(dice) } else { width };
     scene.image = ImageSize { width, height };
     scene.integration.method = Method::default();
+    scene.integration.antialias = Antialias::None;
     if !dice.one_in(4) {
         scene.decay = Some(Decay::new(dice.spread(0.1, 1.0), dice.spread(0.02, 2.0)));
     }

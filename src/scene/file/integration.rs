@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::integration::{check_divisions, check_strata, check_tolerance};
 use crate::scene::values::{Checked, Fault};
-use crate::scene::{Integration, Measure, Method, Reduction, Sampling};
+use crate::scene::{Antialias, Integration, Measure, Method, Reduction, Sampling};
 
 /// `[integration]`: keys of all methods may stand there, whichever is chosen.
 #[derive(Deserialize, Serialize)]
@@ -22,6 +22,7 @@ pub(super) struct IntegrationTable {
     measure: Measure,
     #[serde(skip_serializing_if = "Reduction::is_sum")]
     reduction: Reduction,
+    antialias: Antialias,
     softening: f64,
 }
 
@@ -38,6 +39,7 @@ impl Default for IntegrationTable {
         let Integration {
             measure,
             reduction,
+            antialias,
             softening,
             ..
         } = Integration::default();
@@ -49,6 +51,7 @@ impl Default for IntegrationTable {
             sampling: None,
             measure,
             reduction,
+            antialias,
             softening,
         }
     }
@@ -96,6 +99,7 @@ impl IntegrationTable {
             },
             measure: self.measure,
             reduction: self.reduction,
+            antialias: self.antialias,
             softening: self.softening,
         }
     }
@@ -104,6 +108,7 @@ impl IntegrationTable {
         let keep = Self {
             measure: integration.measure,
             reduction: integration.reduction,
+            antialias: integration.antialias,
             softening: integration.softening,
             ..Self::default()
         };
