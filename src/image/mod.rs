@@ -6,21 +6,24 @@ mod depth;
 mod depth_channel;
 #[cfg(feature = "files")]
 mod depth_file;
+mod display;
 #[cfg(feature = "files")]
 mod file;
 #[cfg(feature = "files")]
 mod openexr;
 mod size;
+mod srgb;
 mod tone_map;
 
 pub use compare::{Difference, compare};
 pub use depth::{DepthAlong, DepthImage, DepthOptions};
+pub use display::Display;
 #[cfg(feature = "files")]
 pub use file::{ImageFile, ImageFormat};
 #[cfg(feature = "files")]
 pub use openexr::DECODER_THREAD;
 pub use size::ImageSize;
-pub use tone_map::{Display, ToneMap};
+pub use tone_map::ToneMap;
 
 use crate::error::{Error, Result};
 use crate::memory;
