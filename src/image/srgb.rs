@@ -8,3 +8,12 @@ pub(crate) fn srgb_encode(linear: f32) -> f32 {
         _ => 1.0,
     }
 }
+
+/// Decodes a value of `[0,1]`.
+#[cfg(feature = "files")]
+pub(crate) fn srgb_decode(encoded: f32) -> f32 {
+    match encoded <= 0.04045 {
+        true => encoded / 12.92,
+        false => ((encoded + 0.055) / 1.055).powf(2.4),
+    }
+}

@@ -24,8 +24,8 @@ pub enum ToneMap {
     /// 1 on.
     #[default]
     Agx,
-    /// The Khronos PBR Neutral Tone Mapper (Khronos Group 2024): colours up to 0.8 stay as they are, less 0.04; brighter
-    /// ones lose their saturation.
+    /// The Khronos PBR Neutral Tone Mapper (Khronos Group 2024): colours up to 0.8 stay as they are, less 0.04, and
+    /// brighter ones lose their saturation.
     KhronosNeutral,
 }
 

@@ -3,7 +3,7 @@
 
 use energywave::RadianceImage;
 use energywave::glam::{DMat3, DVec3};
-use energywave::image::{Display, ImageSize, ToneMap};
+use energywave::image::{Display, Exposure, ImageSize, ToneMap};
 
 const ALL: [ToneMap; 6] = [
     ToneMap::Clamp,
@@ -255,7 +255,7 @@ fn a_picture_has_each_pixels_colour_mapped_within_a_step() {
         pixel.copy_from_slice(&[color[0] / 4.0, color[1] / 4.0, color[2] / 4.0, 1.0]);
     }
     let picture = image.tone_map(&Display {
-        exposure: 2.0,
+        exposure: Exposure::Stops(2.0),
         ..Display::default()
     });
     for (bytes, color) in picture.as_slice().chunks_exact(3).zip(COLORS) {
