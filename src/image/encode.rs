@@ -1,8 +1,7 @@
 //! Encodes images: EXR by the crate exr, which has its attributes, and the others by the crate image.
 
 use exr::prelude::{
-    AttributeValue, Encoding, Image, Layer, LayerAttributes, SpecificChannels, Text, Vec2,
-    WritableImage, f16,
+    Encoding, Image, Layer, LayerAttributes, SpecificChannels, Text, Vec2, WritableImage, f16,
 };
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
@@ -62,16 +61,16 @@ fn attributes(notes: &Notes) -> LayerAttributes {
             .map(|c| if (c as u32) < 256 { c } else { '?' });
         Text::new_or_none(known.collect::<String>())
     };
-    let mut attributes = LayerAttributes {
+    // One attribute: the crate writes further ones in an order that changes from run to run.
+    let lines: Vec<String> = notes
+        .iter()
+        .map(|(name, value)| format!("{name}: {value}"))
+        .collect();
+    LayerAttributes {
         software_name: text(concat!("energywave ", env!("CARGO_PKG_VERSION"))),
+        comments: text(&lines.join("\n")).filter(|_| !lines.is_empty()),
         ..LayerAttributes::default()
-    };
-    for (name, value) in notes {
-        if let (Some(name), Some(value)) = (text(name), text(value)) {
-            attributes.other.insert(name, AttributeValue::Text(value));
-        }
     }
-    attributes
 }
 
 /// Encodes a picture as PNG.

@@ -51,8 +51,8 @@ impl ImageFile {
         }
     }
 
-    /// Adds what an EXR is to say of how it was made, as an attribute of text; other formats leave it out. The name and
-    /// the version of this crate are there without.
+    /// Adds a line `name: value` to what an EXR says of how it was made, in its attribute `comments`; other formats
+    /// leave it out. The name and the version of this crate are in `software` without.
     #[must_use]
     pub fn note(mut self, name: &'static str, value: impl Into<String>) -> Self {
         self.notes.push((name, value.into()));
