@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 
-use energywave::image::{Display, ImageSize, ToneMap};
+use energywave::image::{Display, Exposure, ImageSize, ToneMap};
 use energywave::scene::{Camera, Decay, Measure, Profile, Segment, Sphere};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
@@ -31,8 +31,9 @@ fn scene_at(time: f64) -> Scene {
     scene.integration.measure = Measure::Parameter;
     scene.decay = Some(Decay::new(1.0, 1.0));
     scene.display = Display {
-        exposure: -0.8,
+        exposure: Exposure::Stops(-0.8),
         tone_map: ToneMap::Aces,
+        ..Display::default()
     };
     let hand = DVec3::new(-1.2, 0.0, 0.0);
     let charge = ramp(time, 0.0, 0.5);

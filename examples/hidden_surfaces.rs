@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 
-use energywave::image::{Display, ImageSize, ToneMap};
+use energywave::image::{Display, Exposure, ImageSize, ToneMap};
 use energywave::papers::{camera_2010, tetrahedra};
 use energywave::scene::{Beam, Measure, Profile};
 use energywave::{Device, Renderer, Scene};
@@ -29,8 +29,9 @@ fn main() -> energywave::Result<()> {
         ..Beam::new(DVec3::X)
     });
     scene.display = Display {
-        exposure: -9.6,
+        exposure: Exposure::Stops(-9.6),
         tone_map: ToneMap::Aces,
+        ..Display::default()
     };
 
     // A host has these distances from its own depth buffer: `DepthImage::new(size, along, values)`.

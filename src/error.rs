@@ -100,7 +100,11 @@ pub enum Error {
     OutOfMemory(String),
 
     /// The name of the output says no known format.
-    #[error("{}: unknown output ending; use .png (8-bit sRGB) or .exr (32-bit linear)", shown_path(.0))]
+    #[error(
+        "{}: unknown output ending; use .png (8-bit sRGB) or .exr (32-bit linear){}",
+        shown_path(.0),
+        other_endings()
+    )]
     OutputFormat(PathBuf),
 
     /// The output cannot be written. Nothing is left behind.
@@ -286,4 +290,14 @@ fn log_lines(log: &str) -> String {
         return "; the driver gave no log: update it, or choose another device".to_owned();
     }
     log.lines().map(|line| format!("\n    {line}")).collect()
+}
+
+/// Returns the endings of the formats that this build has beside those of every build.
+fn other_endings() -> &'static str {
+    match (cfg!(feature = "webp"), cfg!(feature = "jpeg")) {
+        (true, true) => ", also .webp and .jpg",
+        (true, false) => ", also .webp",
+        (false, true) => ", also .jpg",
+        (false, false) => "",
+    }
 }

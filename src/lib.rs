@@ -40,9 +40,9 @@
 //! # }
 //! ```
 //!
-//! Features, all on by default: `files` (EXR and PNG images, TOML scenes), `json` (JSON scenes and rays),
-//! `kernel-cache` (built kernels on disk, for drivers that keep none), `threads` (the reference and tone mapping on all
-//! cores), `papers` (the papers' tables), `cli` (the program, with all of these).
+//! Features, all on by default: `files` (EXR and PNG images, TOML scenes), `webp` and `jpeg` (such images), `json`
+//! (JSON scenes and rays), `kernel-cache` (built kernels on disk, for drivers that keep none), `threads` (the reference
+//! and tone mapping on all cores), `papers` (the papers' tables), `cli` (the program, with all of these).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod cost;

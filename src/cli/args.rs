@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use energywave::image::{DepthAlong, DepthImage, DepthOptions, ImageSize};
+use energywave::image::{DepthAlong, DepthImage, DepthOptions, Exposure, ImageSize};
 use energywave::scene::{Antialias, Method, MethodKeys, Sampling, Scene};
 use energywave::{Error, RendererOptions, SlowStart};
 
@@ -41,12 +41,18 @@ pub enum Command {
 pub struct RenderArguments {
     /// Scene file, TOML or (.json) JSON; - is standard input
     pub scene: PathBuf,
-    /// Image to write: .png (8-bit sRGB) or .exr (32-bit linear); - is standard output
+    /// Image to write: .png, .webp, .jpg (sRGB) or .exr (linear); - is standard output
     #[arg(short, long)]
     pub output: PathBuf,
     /// Format of the image [default: by the ending of its name; png where that has none]
     #[arg(long)]
     pub format: Option<FormatName>,
+    /// Bits of a channel: 8 or 16 of a PNG, 16 or 32 of an EXR [default: the scene's, else 8, and 32]
+    #[arg(long, value_name = "N")]
+    pub bits: Option<u32>,
+    /// Exposure in stops, or auto, which fits the picture [default: the scene's, else fits the scene]
+    #[arg(long, value_name = "STOPS|auto", value_parser = exposure, allow_hyphen_values = true)]
+    pub exposure: Option<Exposure>,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
@@ -262,10 +268,14 @@ pub enum SamplingName {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum FormatName {
-    /// 8-bit sRGB, tone-mapped
+    /// sRGB, tone-mapped
     Png,
-    /// 32-bit linear
+    /// Linear light
     Exr,
+    /// 8-bit sRGB, tone-mapped, lossless
+    Webp,
+    /// 8-bit sRGB, tone-mapped, without alpha
+    Jpeg,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -395,6 +405,14 @@ fn divisions(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(divisions @ 2..=65536) if divisions % 2 == 0 => Ok(divisions),
         _ => Err("Simpson's rule needs an even number from 2 to 65536".to_owned()),
+    }
+}
+
+fn exposure(text: &str) -> Result<Exposure, String> {
+    match (text, text.parse()) {
+        ("auto", _) => Ok(Exposure::Auto),
+        (_, Ok(stops)) if (-100.0..=100.0).contains(&stops) => Ok(Exposure::Stops(stops)),
+        _ => Err("an exposure is a number of stops from -100 to 100, or auto".to_owned()),
     }
 }
 

@@ -1,48 +1,20 @@
-//! Image files: EXR (float32, linear) and PNG (8-bit sRGB).
+//! Image files: written when their output is known to be writable, and read.
 
 use std::io;
 use std::path::Path;
 
-use image::codecs::openexr::OpenExrEncoder;
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageError};
-
+use super::encode::{self, Fault, Notes};
 use super::openexr::OpenExr;
-use super::{Display, DisplayImage, RadianceImage};
+use super::{Alpha, Display, DisplayImage, ImageFormat, RadianceImage};
 use crate::error::{Error, Result};
-use crate::output::{Output, Sink, is_stream};
-
-/// A file format, chosen by the ending of a file's name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum ImageFormat {
-    /// 32-bit float, linear, before exposure and tone mapping.
-    Exr,
-    /// 8-bit sRGB, after both, dithered.
-    Png,
-}
-
-impl ImageFormat {
-    /// Chooses the format by the ending of a file's name; PNG for a pipe or a device without a known one.
-    ///
-    /// # Errors
-    /// [`Error::OutputFormat`] for any other ending.
-    pub fn of(path: &Path) -> Result<Self> {
-        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-        match ending.to_str() {
-            Some("exr") => Ok(Self::Exr),
-            Some("png") => Ok(Self::Png),
-            _ if is_stream(path) => Ok(Self::Png),
-            _ => Err(Error::OutputFormat(path.to_owned())),
-        }
-    }
-}
+use crate::output::{Output, Sink};
 
 /// An output that is known to be writable before anything is computed.
 #[derive(Debug)]
 pub struct ImageFile {
     format: ImageFormat,
     output: Output,
+    notes: Notes,
 }
 
 impl ImageFile {
@@ -62,45 +34,88 @@ impl ImageFile {
     /// # Errors
     /// [`Error::Output`] as there.
     pub fn create_as(path: impl AsRef<Path>, format: ImageFormat) -> Result<Self> {
-        let output = Output::create(path.as_ref())?;
-        Ok(Self { format, output })
+        Ok(Self::of(format, Output::create(path.as_ref())?))
     }
 
     /// Writes to standard output.
     #[must_use]
     pub fn stdout(format: ImageFormat) -> Self {
-        let output = Output::stdout();
-        Self { format, output }
+        Self::of(format, Output::stdout())
     }
 
-    /// Encodes the image, tone-mapped if the format is for screens, and puts the file in its place. A file that is
-    /// there keeps its mode and its owner.
-    ///
-    /// # Errors
-    /// [`Error::Output`] if the disk is full or nobody reads the pipe; nothing is left behind then.
-    pub fn write(self, image: &RadianceImage, display: &Display) -> Result<()> {
-        match self.format {
-            ImageFormat::Exr => encoded(self.output, |writer| encode_exr(image, writer)),
-            ImageFormat::Png => {
-                let picture = image.tone_map(display);
-                encoded(self.output, |writer| encode_png(&picture, writer))
-            }
+    fn of(format: ImageFormat, output: Output) -> Self {
+        Self {
+            format,
+            output,
+            notes: Notes::new(),
         }
     }
+
+    /// Adds a line `name: value` to what an EXR says of how it was made, in its attribute `comments`; other formats
+    /// leave it out. The name and the version of this crate are in `software` without.
+    #[must_use]
+    pub fn note(mut self, name: &'static str, value: impl Into<String>) -> Self {
+        self.notes.push((name, value.into()));
+        self
+    }
+
+    /// Encodes the image as `display` has it, tone-mapped if the format is for screens, and puts the file in its place.
+    /// A file that is there keeps its mode and its owner.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if the format cannot hold it ([`ImageFormat::check`]); [`Error::Output`] if the disk is full or
+    /// nobody reads the pipe; nothing is left behind then.
+    pub fn write(self, image: &RadianceImage, display: &Display) -> Result<()> {
+        self.format.check(display)?;
+        if self.format == ImageFormat::Exr {
+            let notes = &self.notes;
+            return encoded(self.output, |writer| {
+                encode::exr(image, display, notes, writer)
+            });
+        }
+        write_picture(
+            self.format,
+            self.output,
+            &image.tone_map(display),
+            display.quality,
+        )
+    }
+}
+
+/// Encodes a picture in a format for screens.
+fn write_picture(
+    format: ImageFormat,
+    output: Output,
+    picture: &DisplayImage,
+    #[cfg_attr(not(feature = "jpeg"), allow(unused_variables))] quality: Option<u32>,
+) -> Result<()> {
+    encoded(output, |writer| {
+        match format {
+            #[cfg(feature = "webp")]
+            ImageFormat::WebP => encode::webp(picture, writer),
+            #[cfg(feature = "jpeg")]
+            ImageFormat::Jpeg => encode::jpeg(picture, quality, writer),
+            _ => encode::png(picture, writer),
+        }
+        .map_err(Fault::from)
+    })
 }
 
 fn encoded(
     output: Output,
-    encode: impl FnOnce(&mut dyn Sink) -> std::result::Result<(), ImageError>,
+    encode: impl FnOnce(&mut dyn Sink) -> std::result::Result<(), Fault>,
 ) -> Result<()> {
-    output.write_with(|writer| encode(writer).map_err(|error| io::Error::other(reason(&error))))
+    output.write_with(|writer| encode(writer).map_err(|error| io::Error::other(reason(&*error))))
 }
 
 /// Returns the system's own words, which the user can act on; encoders wrap them in words about images.
-fn reason(error: &ImageError) -> String {
-    let mut source: &(dyn std::error::Error + 'static) = error;
+fn reason(error: &(dyn std::error::Error + 'static)) -> String {
+    let mut source = error;
     loop {
         if let Some(io) = source.downcast_ref::<io::Error>() {
+            return io.to_string();
+        }
+        if let Some(exr::error::Error::Io(io)) = source.downcast_ref::<exr::error::Error>() {
             return io.to_string();
         }
         match source.source() {
@@ -110,35 +125,11 @@ fn reason(error: &ImageError) -> String {
     }
 }
 
-fn encode_exr(image: &RadianceImage, writer: &mut dyn Sink) -> std::result::Result<(), ImageError> {
-    let size = image.size();
-    let bytes = bytemuck::cast_slice(image.as_slice());
-    OpenExrEncoder::new(writer).write_image(
-        bytes,
-        size.width,
-        size.height,
-        ExtendedColorType::Rgba32F,
-    )
-}
-
-fn encode_png(
-    picture: &DisplayImage,
-    writer: &mut dyn Sink,
-) -> std::result::Result<(), ImageError> {
-    let size = picture.size();
-    PngEncoder::new(writer).write_image(
-        picture.as_slice(),
-        size.width,
-        size.height,
-        ExtendedColorType::Rgb8,
-    )
-}
-
 impl RadianceImage {
-    /// Writes an `.exr` (linear) or a `.png` (tone-mapped for `display`); the ending chooses.
+    /// Writes an `.exr` (linear) or a picture such as a `.png` (tone-mapped for `display`); the ending chooses.
     ///
     /// # Errors
-    /// [`Error::OutputFormat`] for another ending, [`Error::Output`] if the file cannot be written.
+    /// [`Error::OutputFormat`] for another ending, [`Error::Scene`] and [`Error::Output`] as [`ImageFile::write`].
     pub fn save(&self, path: impl AsRef<Path>, display: &Display) -> Result<()> {
         ImageFile::create(path)?.write(self, display)
     }
@@ -172,16 +163,30 @@ impl RadianceImage {
 }
 
 impl DisplayImage {
-    /// Writes a `.png`.
+    /// Writes a `.png`, or another format for screens; the ending chooses.
     ///
     /// # Errors
-    /// [`Error::OutputFormat`] for another ending, [`Error::Output`] if the file cannot be written.
+    /// [`Error::OutputFormat`] for another ending, [`Error::Scene`] if the format cannot hold its alpha or its 16 bits,
+    /// [`Error::Output`] if the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        let output = ImageFile::create(path)?;
-        if output.format != ImageFormat::Png {
+        let file = ImageFile::create(path)?;
+        if file.format == ImageFormat::Exr {
             return Err(Error::OutputFormat(path.to_owned()));
         }
-        encoded(output.output, |writer| encode_png(self, writer))
+        file.format.check(&self.display())?;
+        write_picture(file.format, file.output, self, None)
+    }
+
+    /// Returns what a format must be able to hold.
+    fn display(&self) -> Display {
+        Display {
+            bits: Some(self.bits),
+            alpha: match self.channels {
+                4 => Alpha::Luminance,
+                _ => Alpha::Opaque,
+            },
+            ..Display::default()
+        }
     }
 }

@@ -1,26 +1,41 @@
-//! Images: depth, linear radiance, the 8-bit picture made of it, files, and comparison.
+//! Images: depth, linear radiance, the picture made of it, what is behind it, files, and comparison.
 
+mod background;
 mod compare;
 mod depth;
 #[cfg(feature = "files")]
 mod depth_channel;
 #[cfg(feature = "files")]
 mod depth_file;
+mod display;
+#[cfg(feature = "files")]
+mod encode;
+mod exposure;
 #[cfg(feature = "files")]
 mod file;
 #[cfg(feature = "files")]
+mod format;
+#[cfg(feature = "files")]
 mod openexr;
+#[cfg(feature = "files")]
+mod picture_file;
 mod size;
+mod srgb;
 mod tone_map;
 
+pub use background::{Background, BackgroundImage};
 pub use compare::{Difference, compare};
 pub use depth::{DepthAlong, DepthImage, DepthOptions};
+pub use display::{Alpha, Display};
+pub use exposure::Exposure;
 #[cfg(feature = "files")]
-pub use file::{ImageFile, ImageFormat};
+pub use file::ImageFile;
+#[cfg(feature = "files")]
+pub use format::ImageFormat;
 #[cfg(feature = "files")]
 pub use openexr::DECODER_THREAD;
 pub use size::ImageSize;
-pub use tone_map::{Display, ToneMap};
+pub use tone_map::ToneMap;
 
 use crate::error::{Error, Result};
 use crate::memory;
@@ -106,10 +121,12 @@ pub(crate) fn kept_image(
     }))
 }
 
-/// An 8-bit picture: sRGB-encoded RGB by rows from the top left.
+/// A picture for screens: sRGB-encoded RGB, or RGBA of straight alpha, by rows from the top left.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DisplayImage {
     size: ImageSize,
+    channels: usize,
+    bits: u32,
     data: Vec<u8>,
 }
 
@@ -120,7 +137,19 @@ impl DisplayImage {
         self.size
     }
 
-    /// Returns the RGB bytes, 3 for every pixel.
+    /// Returns how many channels a pixel has: 3, or 4 with alpha.
+    #[must_use]
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// Returns how many bits a channel has: 8, or 16.
+    #[must_use]
+    pub fn bits(&self) -> u32 {
+        self.bits
+    }
+
+    /// Returns the bytes, one for each channel of every pixel; of 16 bits two, in the order of this machine.
     #[must_use]
     pub fn as_slice(&self) -> &[u8] {
         &self.data

@@ -4,7 +4,8 @@ use super::kinds::for_each_kind;
 use super::source::{Falloff, HasLight, Shared};
 use super::{Measure, Reduction, Scene};
 
-/// So far from a core, as a share of the picture's height, light is shown at about two thirds of white.
+/// So far from a core, as a share of the picture's height, light is shown at about two thirds of white. That holds for
+/// AgX as for `1 - exp(-L)`: seen on one ring, both are as dark far from it, and half a stop more is fog around it.
 const HALO: f64 = 0.008;
 
 macro_rules! define_all_shared {

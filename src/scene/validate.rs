@@ -4,7 +4,7 @@ use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, SMALLEST, finite};
 use super::{BRIGHTEST, Brightness, CORE_FLOOR, List, Measure, Scene, SourceKind, SourcesStamp};
 use crate::error::{Result, SceneError};
-use crate::image::{Display, ImageSize};
+use crate::image::{Background, Display, Exposure, ImageSize};
 
 type CheckedScene = std::result::Result<(), SceneError>;
 
@@ -55,7 +55,7 @@ impl Scene {
         let integration = &self.integration;
         integration.method.check().map_err(of("integration"))?;
         check_softening(integration.softening).map_err(of("integration"))?;
-        check_display(&self.display).map_err(of("display"))?;
+        check_display(&self.display, self.image).map_err(of("display"))?;
         self.check_depth().map_err(of(""))?;
         self.check_reduction()?;
         let brightness = self.brightness();
@@ -163,10 +163,43 @@ fn check_softening(softening: f64) -> Checked {
     Ok(())
 }
 
-fn check_display(display: &Display) -> Checked {
-    finite("exposure", display.exposure)?;
-    if display.exposure.abs() > 100.0 {
-        return Err(Fault::new("exposure", "more than 100 stops"));
+fn check_display(display: &Display, size: ImageSize) -> Checked {
+    if let Exposure::Stops(stops) = display.exposure {
+        finite("exposure", stops)?;
+        if stops.abs() > 100.0 {
+            return Err(Fault::new("exposure", "more than 100 stops"));
+        }
     }
-    Ok(())
+    if let Some(bits) = display.bits.filter(|bits| ![8, 16, 32].contains(bits)) {
+        let message = format!("{bits} bits a channel; a PNG has 8 or 16, an EXR 16 or 32");
+        return Err(Fault::new("bits", message));
+    }
+    if let Some(quality) = display
+        .quality
+        .filter(|quality| !(1..=100).contains(quality))
+    {
+        let message = format!("{quality}; a quality lies between 1 and 100");
+        return Err(Fault::new("quality", message));
+    }
+    match &display.background {
+        None => Ok(()),
+        Some(Background::Color(color)) => {
+            let is_shown = color.iter().all(|channel| (0.0..=1.0).contains(channel));
+            match is_shown {
+                true => Ok(()),
+                false => Err(Fault::new("background", "channels lie between 0 and 1")),
+            }
+        }
+        Some(Background::Image(image)) => {
+            let found = image.size();
+            if found == size {
+                return Ok(());
+            }
+            let message = format!(
+                "the background has {}x{} pixels, the image {}x{}; they must be equal",
+                found.width, found.height, size.width, size.height
+            );
+            Err(Fault::new("background", message))
+        }
+    }
 }

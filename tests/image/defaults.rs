@@ -31,7 +31,7 @@ fn the_smallest_scene_is_a_bright_line_in_a_faint_halo() {
     let mut in_code = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 2.0), DVec3::ZERO));
     in_code.image = scene.image;
     in_code.tori.push(Torus::new(1.0));
-    in_code.display.exposure = in_code.fitting_exposure();
+    in_code.display.exposure = in_code.fitting_exposure().into();
     assert_eq!(in_code, scene);
     let shares = |scene: &Scene| {
         let shown = draw(scene).tone_map(&scene.display);

@@ -34,3 +34,4 @@ mod segment; // holds segments to their definition
 mod shape_forms; // takes closed forms of shapes along every part of a ray
 mod shapes; // holds how fields fall off to their definition
 mod tiles; // holds interpolation by tiles to the tolerance, and counts what it costs
+mod tone_maps; // holds tone maps to their published constants

@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bad_displays; // has displays refused that no file can hold
 mod bad_looks; // has every fault of layers named with its place
 mod bad_scenes;
 mod bad_series; // has every fault of a scene file named with its place
@@ -13,6 +14,7 @@ mod cli; // runs the program: exit codes, messages and outputs
 mod damaged; // changes bytes of images and scenes
 #[cfg(unix)] // as cli
 mod depths; // reads depth images of other programs
+mod displays; // lays files over plates as other programs do
 mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
 mod groups; // has groups placed as the sources that they stand for

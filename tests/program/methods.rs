@@ -182,12 +182,12 @@ fn a_root_is_written_and_read_and_has_an_exposure_that_fits() {
     for measure in [Measure::Length, Measure::Parameter] {
         let mut root = root.clone();
         root.integration.measure = measure;
-        root.display.exposure = root.fitting_exposure();
+        let stops = root.fitting_exposure();
         let eye = root.camera.eye;
         let to = DVec3::new(0.008 * height, 0.0, 0.0) - eye;
         let ray = Ray::between(eye, eye + to.normalize() * root.ray_length());
         let light = device.integrate(&root, &[ray]).unwrap()[0][0];
-        let shown = light * root.display.exposure.exp2();
+        let shown = light * stops.exp2();
         assert!((0.9..1.1).contains(&shown), "{measure:?}: {shown}");
     }
 }

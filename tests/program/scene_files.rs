@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use crate::common;
-use energywave::image::{DepthAlong, DepthImage, ImageSize, ToneMap};
+use energywave::image::{
+    Alpha, Background, DepthAlong, DepthImage, Display, Exposure, ImageSize, ToneMap,
+};
 use energywave::internals::KINDS;
 use energywave::scene::{
     Antialias, Beam, BeamEnd, Camera, Curve, Cylinder, Dashes, Decay, ElectricArc, Integration,
@@ -207,8 +209,15 @@ fn rich_scenes() -> Vec<Scene> {
             reduction: Reduction::Sum, // of as many sources
             softening: [0.0, number(random)][index / 2 % 2],
         };
-        scene.display.exposure = number(random).min(99.0);
-        scene.display.tone_map = [ToneMap::Exponential, ToneMap::Clamp][index / 2 % 2];
+        let stops = Exposure::Stops(number(random).min(99.0));
+        scene.display = Display {
+            exposure: [stops, Exposure::Auto][index % 2],
+            tone_map: [ToneMap::KhronosNeutral, ToneMap::Clamp][index / 2 % 2],
+            alpha: [Alpha::Opaque, Alpha::Additive, Alpha::Luminance][index % 3],
+            background: (index % 2 == 0).then_some(Background::Color([0.1, 0.0, 1.0])),
+            bits: [None, Some(8), Some(16)][index % 3],
+            quality: (index % 2 == 1).then_some(75),
+        };
         add_sources(&mut scene, random);
         scene.validate().unwrap();
         let text = scene.to_toml().unwrap();
@@ -296,7 +305,7 @@ fn a_changed_value_is_noticed() {
         ("sampling", |s| *s = common::sampled(s, Sampling::Pixels)),
         ("tolerance", |s| *s = common::at_tolerance(s, 1e-3)),
         ("measure", |s| s.integration.measure = Measure::Length),
-        ("exposure", |s| nudge(&mut s.display.exposure)),
+        ("exposure", |s| s.display.exposure = Exposure::Stops(1.25)),
         ("sphere", |s| nudge(&mut s.spheres[1].coefficient)),
         ("profile", |s| {
             s.cylinders[0].profile = Profile::InverseSquare

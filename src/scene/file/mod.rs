@@ -109,14 +109,14 @@ macro_rules! define_scene_file {
             }
 
             /// Makes a file's scene as it is written.
-            fn of(scene: &Scene, depth: Option<DepthTable>) -> Self {
+            fn of(scene: &Scene, depth: Option<DepthTable>, display: DisplayTable) -> Self {
                 Self {
                     camera: scene.camera.clone(),
                     image: scene.image,
                     decay: scene.decay,
                     absorption: scene.absorption,
                     integration: IntegrationTable::of(&scene.integration),
-                    display: DisplayTable::of(&scene.display),
+                    display,
                     depth,
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
@@ -132,7 +132,8 @@ fn is_empty<T>(list: &List<T>) -> bool {
 }
 
 impl SceneFile {
-    /// Checks the scene, lets `adjust` change it, reads a depth image unless it has given one, and checks it again.
+    /// Checks the scene, lets `adjust` change it, reads a depth image and a background unless it has given them, and
+    /// checks it again.
     fn into_scene(mut self, folder: &Path, adjust: Adjust<'_>) -> Result<Read> {
         let mut scene = self.scene();
         self.integration
@@ -145,6 +146,7 @@ impl SceneFile {
         if let (Some(depth), None) = (&self.depth, &scene.depth) {
             scene.depth = Some(depth.open(folder)?);
         }
+        self.display.read_background(folder, &mut scene)?;
         groups.check(&scene)?;
         let warnings = groups.warnings(&scene);
         Ok((scene, warnings))

@@ -39,7 +39,8 @@ pub(super) fn meant(raw: &str, is_whole: bool) -> Option<String> {
 
 /// Returns whether the last part of a key is a whole number's.
 pub(super) fn is_whole(key: &str) -> bool {
-    ["width", "height", "divisions", "count"].contains(&key.rsplit('.').next().unwrap_or(key))
+    ["width", "height", "divisions", "count", "bits", "quality"]
+        .contains(&key.rsplit('.').next().unwrap_or(key))
 }
 
 /// Returns what stands for a number at this place of a text: letters, digits, signs and points without a gap; or the

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Serialize, Serializer};
 
-use super::{DepthTable, SceneFile};
+use super::{DepthTable, DisplayTable, SceneFile};
 use crate::error::{Error, Result};
 use crate::output::Output;
 use crate::scene::Scene;
@@ -12,9 +12,12 @@ use crate::scene::Scene;
 /// Why a scene cannot be written.
 const NO_FILE: &str =
     "the depth image is in no file that the scene could name; save it as OpenEXR and open it again";
+const NO_BACKGROUND: &str =
+    "the background is in no file that the scene could name; save it and open it again";
 
 impl Serialize for Scene {
-    /// Writes the structure of scene files. A depth image is named by the full path of its file.
+    /// Writes the structure of scene files. A depth image and a background are named by the full
+    /// paths of their files.
     fn serialize<S: Serializer>(&self, writer: S) -> std::result::Result<S::Ok, S::Error> {
         let depth = match &self.depth {
             None => None,
@@ -22,7 +25,9 @@ impl Serialize for Scene {
                 Some(DepthTable::of(depth).ok_or_else(|| serde::ser::Error::custom(NO_FILE))?)
             }
         };
-        SceneFile::of(self, depth).serialize(writer)
+        let display = DisplayTable::of(&self.display);
+        let display = display.ok_or_else(|| serde::ser::Error::custom(NO_BACKGROUND))?;
+        SceneFile::of(self, depth, display).serialize(writer)
     }
 }
 
@@ -30,7 +35,7 @@ impl Scene {
     /// Writes the scene as TOML.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] if it has a depth image that is in no file.
+    /// [`Error::Unsupported`] if it has a depth image, or a background, that is in no file.
     pub fn to_toml(&self) -> Result<String> {
         toml::to_string(self).map_err(|error| Error::Unsupported(error.to_string()))
     }

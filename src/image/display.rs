@@ -1,0 +1,201 @@
+//! Linear radiance to an sRGB picture: background, exposure, tone mapping, alpha, sRGB encoding, dither.
+
+use serde::{Deserialize, Serialize};
+
+use super::srgb::srgb_encode;
+use super::{Background, DisplayImage, Exposure, RadianceImage, ToneMap};
+use crate::threads;
+
+/// How linear radiance becomes a picture. Structs may get further fields: write `..Display::default()`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Display {
+    /// What radiance is multiplied with.
+    pub exposure: Exposure,
+    /// The curve that brings radiance into `[0,1]`.
+    pub tone_map: ToneMap,
+    /// What the light hides of what is behind it, and what a file's alpha says of that.
+    pub alpha: Alpha,
+    /// What is behind the light; a file then holds both, and is opaque.
+    pub background: Option<Background>,
+    /// Bits of a channel: 8 or 16 of a PNG, 16 or 32 (floats) of an EXR. `None`: 8, and 32 of an EXR.
+    pub bits: Option<u32>,
+    /// How well a JPEG is encoded, 1 to 100. `None`: 90.
+    pub quality: Option<u32>,
+}
+
+/// What light hides of what is behind it, and what a file says of that.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Alpha {
+    /// Light adds to a background. Files have no background behind them: alpha is 1.
+    #[default]
+    Opaque,
+    /// Light adds to what it is laid over: alpha is 0, colour is not. Only EXR can say that.
+    Additive,
+    /// Light hides what is behind it as far as it is bright: alpha is the greatest channel of the exposed, tone-mapped
+    /// light, still linear, so that over black the picture is the opaque one.
+    Luminance,
+}
+
+/// A pixel on its way to a screen: linear colour in `[0,1]`, times alpha, and alpha.
+type Shown = ([f32; 3], f32);
+
+impl RadianceImage {
+    /// Makes the picture for a screen, dithered where it has 8 bits so that wide glows do not band; black stays black
+    /// and white stays white. It has an alpha channel, straight, where `display` asks for [`Alpha::Luminance`] and has
+    /// no background.
+    #[must_use]
+    pub fn tone_map(&self, display: &Display) -> DisplayImage {
+        let has_alpha = display.has_alpha() && display.alpha == Alpha::Luminance;
+        let (channels, bits) = (3 + usize::from(has_alpha), display.bits.unwrap_or(8));
+        let bytes = usize::from(bits == 16) + 1;
+        let gain = self.gain(display);
+        let width = self.size.width as usize;
+        let mut data = vec![0_u8; bytes * channels * self.size.pixels()];
+        threads::for_each_chunk(&mut data, bytes * channels, |i, pixel| {
+            let white = if bytes == 1 { 255.0 } else { 65535.0 };
+            let shown = self.shown(i, display, gain, white);
+            match bytes {
+                1 => {
+                    let threshold = gradient_noise(i % width, i / width);
+                    for (byte, value) in pixel.iter_mut().zip(stored(shown, white)) {
+                        *byte = (value + threshold) as u8;
+                    }
+                }
+                _ => {
+                    let values = stored(shown, white);
+                    for (pair, value) in pixel.chunks_exact_mut(2).zip(values) {
+                        pair.copy_from_slice(&((value + 0.5) as u16).to_ne_bytes());
+                    }
+                }
+            }
+        });
+        DisplayImage {
+            size: self.size,
+            channels,
+            bits: 8 * bytes as u32,
+            data,
+        }
+    }
+
+    /// Returns linear RGBA before exposure and tone mapping as `display` has it: colour times alpha, over the
+    /// background if there is one.
+    #[cfg(feature = "files")]
+    pub(super) fn film_pixel(&self, index: usize, display: &Display, gain: f32) -> [f32; 4] {
+        let (light, alpha) = (self.light(index), self.data[4 * index + 3]);
+        let hidden = match display.alpha {
+            Alpha::Luminance => most(display.tone_map.apply(light.map(|l| gain * l))),
+            Alpha::Opaque | Alpha::Additive => 0.0,
+        };
+        let ([red, green, blue], alpha) = match (&display.background, display.alpha) {
+            (Some(background), _) => (
+                over(light, hidden, background.linear(self.size, index)),
+                1.0,
+            ),
+            (None, Alpha::Opaque) => (light, alpha),
+            (None, _) => (light, hidden),
+        };
+        [red, green, blue, alpha]
+    }
+
+    /// Returns what radiance is multiplied with.
+    pub(super) fn gain(&self, display: &Display) -> f32 {
+        display.exposure.stops(self).exp2() as f32
+    }
+
+    fn light(&self, index: usize) -> [f32; 3] {
+        [0, 1, 2].map(|channel| self.data[4 * index + channel])
+    }
+
+    /// Tone-maps a pixel, over its background: light before its exposure where that is light, too. What it hides is a
+    /// whole number of steps, of which `white` make 1: so a picture is what a file without a background gives over it.
+    fn shown(&self, index: usize, display: &Display, gain: f32, white: f32) -> Shown {
+        let map = |light: [f32; 3]| display.tone_map.apply(light.map(|l| gain * l));
+        let light = self.light(index);
+        let color = map(light);
+        let hidden = match display.alpha {
+            Alpha::Luminance => (white * most(color)).ceil() / white,
+            Alpha::Opaque | Alpha::Additive => 0.0,
+        };
+        match &display.background {
+            None if display.alpha == Alpha::Luminance => (color, hidden),
+            None => (color, 1.0),
+            Some(background) => {
+                let behind = background.linear(self.size, index);
+                let color = match background.is_light() {
+                    true => map(over(light, hidden, behind)),
+                    false => over(color, hidden, behind).map(|l| l.min(1.0)),
+                };
+                (color, 1.0)
+            }
+        }
+    }
+}
+
+impl Display {
+    /// Returns whether a file says how much its light hides.
+    pub(super) fn has_alpha(&self) -> bool {
+        self.alpha != Alpha::Opaque && self.background.is_none()
+    }
+}
+
+/// Lays light over what is behind it, of which it hides a share.
+fn over(light: [f32; 3], hidden: f32, behind: [f32; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|channel| light[channel] + (1.0 - hidden) * behind[channel])
+}
+
+fn most(color: [f32; 3]) -> f32 {
+    color.into_iter().fold(0.0, f32::max)
+}
+
+/// Returns a pixel's values, 0 to `white`, before they are rounded, and its alpha. Colour is divided by the alpha that
+/// is stored: so dark light is as exact over black as opaque light is.
+fn stored((color, alpha): Shown, white: f32) -> [f32; 4] {
+    let straight = color.map(|channel| match alpha > 0.0 {
+        true => white * srgb_encode(channel / alpha),
+        false => 0.0,
+    });
+    [
+        straight[0],
+        straight[1],
+        straight[2],
+        (alpha * white).round(),
+    ]
+}
+
+/// Returns interleaved gradient noise in [0,1) (Jimenez 2014), a dither threshold whose error the eye averages away.
+fn gradient_noise(column: usize, row: usize) -> f32 {
+    let phase = 0.067_110_56 * column as f64 + 0.005_837_15 * row as f64;
+    ((52.982_918_9 * phase.fract()).fract() as f32).min(0.999)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::ImageSize;
+
+    fn flat(radiance: f32) -> DisplayImage {
+        let size = ImageSize {
+            width: 64,
+            height: 64,
+        };
+        let mut image = RadianceImage::new(size).unwrap();
+        image.as_mut_slice().fill(radiance);
+        image.tone_map(&Display {
+            tone_map: ToneMap::Clamp,
+            ..Display::default()
+        })
+    }
+
+    #[test]
+    fn black_and_white_are_not_dithered_and_greys_keep_their_mean() {
+        assert!(flat(0.0).as_slice().iter().all(|byte| *byte == 0));
+        assert!(flat(1.0).as_slice().iter().all(|byte| *byte == 255));
+        let encoded = 255.0 * srgb_encode(0.2);
+        let picture = flat(0.2);
+        let sum: f32 = picture.as_slice().iter().map(|byte| f32::from(*byte)).sum();
+        let mean = sum / picture.as_slice().len() as f32;
+        assert!((mean - encoded).abs() < 0.02, "{mean} {encoded}");
+    }
+}
