@@ -1,5 +1,6 @@
 //! Images: depth, linear radiance, the 8-bit picture made of it, files, and comparison.
 
+mod clip;
 mod compare;
 mod depth;
 #[cfg(feature = "files")]
@@ -13,6 +14,8 @@ mod openexr;
 mod size;
 mod tone_map;
 
+pub use clip::{ClipDepth, ClipRange};
+pub(crate) use clip::{axis_of, check_matrix, rows};
 pub use compare::{Difference, compare};
 pub use depth::{DepthAlong, DepthImage, DepthOptions};
 #[cfg(feature = "files")]
