@@ -5,6 +5,7 @@
 use glam::{DMat4, DVec3, DVec4, Vec4Swizzles};
 use serde::{Deserialize, Serialize};
 
+use super::DepthAlong;
 use crate::error::{Result, SceneError};
 
 /// From where to where the depths of clip space go between near plane and far plane, or back with reversed z.
@@ -45,6 +46,7 @@ pub struct ClipDepth {
     a: f64,
     b: f64,
     range: ClipRange,
+    projection: DMat4,
 }
 
 /// How far numbers of float32 may be off what they are meant to be, as shares.
@@ -80,7 +82,7 @@ impl ClipDepth {
         let [x, y, z, w] = rows(&projection);
         let scale = w.xyz().length();
         if scale <= ROUNDED * w.w.abs() {
-            return Self::orthographic([x, y, z].map(|row| row / w.w), range);
+            return Self::orthographic(projection, [x, y, z].map(|row| row / w.w), range);
         }
         // Transposed, a perspective has -1 where its last row should, and an orthographic one a 1 at its end.
         let is_turned = (w.w == 0.0 && z.w.abs() == 1.0 && (scale - 1.0).abs() > ROUNDED)
@@ -102,6 +104,7 @@ impl ClipDepth {
             a,
             b,
             range: range.unwrap_or(told),
+            projection,
         };
         let near = found.near();
         if !(near > 0.0 && near.is_finite()) {
@@ -117,6 +120,7 @@ impl ClipDepth {
     /// Reads the rows of x, y and z, which the last row does not divide. It looks from the view's origin to the middle
     /// of what is between the planes.
     fn orthographic(
+        projection: DMat4,
         [x, y, z]: [DVec4; 3],
         range: Option<ClipRange>,
     ) -> std::result::Result<Self, String> {
@@ -142,6 +146,7 @@ impl ClipDepth {
             a: z.w,
             b: if is_reversed { -growth } else { growth },
             range,
+            projection,
         })
     }
 
@@ -151,7 +156,17 @@ impl ClipDepth {
             Kind::Perspective => self.b / unit,
             Kind::Orthographic => self.b * unit,
         };
-        Self { b, ..self }
+        Self {
+            b,
+            projection: self.projection * DMat4::from_scale(DVec3::splat(unit)),
+            ..self
+        }
+    }
+
+    /// Returns the projection, for lengths in the units of its distances.
+    #[must_use]
+    pub fn projection(&self) -> DMat4 {
+        self.projection
     }
 
     /// Returns the range of the depths.
@@ -221,6 +236,15 @@ impl ClipDepth {
         let distance = self.distance(depth.clamp(low, 1.0));
         let is_nowhere = is_far || (self.kind == Kind::Perspective && distance <= 0.0);
         Some(if is_nowhere { f64::INFINITY } else { distance })
+    }
+
+    /// Returns the same of what an image holds: an NDC depth, or what a depth buffer has of it, from 0 to 1.
+    pub(crate) fn along_axis_of(&self, along: DepthAlong, value: f64) -> Option<f64> {
+        let low = self.range.low();
+        match along {
+            DepthAlong::Buffer => self.along_axis(low + value * (1.0 - low)),
+            DepthAlong::Ndc | DepthAlong::Ray | DepthAlong::Axis => self.along_axis(value),
+        }
     }
 
     fn distance(&self, depth: f64) -> f64 {

@@ -8,6 +8,8 @@ mod depth_channel;
 #[cfg(feature = "files")]
 mod depth_file;
 #[cfg(feature = "files")]
+mod depth_source;
+#[cfg(feature = "files")]
 mod file;
 #[cfg(feature = "files")]
 mod openexr;

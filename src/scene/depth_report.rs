@@ -129,8 +129,8 @@ fn warnings(depth: &DepthImage, scene: &Scene, counts: &Counts) -> Vec<String> {
     let is_everywhere = counts.with == counts.pixels && looks_farther;
     if others > 0 && counts.farthest <= 1.0 && (is_everywhere || is_before) {
         found.push(format!(
-            "all depths lie between {} and {}: likely those of a z-buffer, which are no lengths and cannot be read, or \
-             in other units; write them in world units, or give `scale`",
+            "all depths lie between {} and {}: likely those of a z-buffer, which are no lengths, or in other units; \
+             give `along = \"ndc\"` with a projection, or `scale`",
             counts.nearest, counts.farthest
         ));
     } else if is_before {

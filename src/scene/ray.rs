@@ -113,7 +113,8 @@ impl ViewPlane {
         match along {
             _ if self.is_parallel => depth,
             DepthAlong::Ray => depth,
-            DepthAlong::Axis => depth * to_plane / self.near,
+            // An image holds no others.
+            DepthAlong::Axis | DepthAlong::Ndc | DepthAlong::Buffer => depth * to_plane / self.near,
         }
     }
 

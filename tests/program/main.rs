@@ -11,6 +11,7 @@ mod bench; // compares the speed tables' frames with float64, and reads what `en
 #[cfg(unix)] // shells, signals and the loader's environment variables
 mod cameras; // reads matrices of engines, and refuses what is none
 mod cli; // runs the program: exit codes, messages and outputs
+mod clip_depths; // reads depth files of engines
 mod damaged; // changes bytes of images and scenes
 #[cfg(unix)] // as cli
 mod depths; // reads depth images of other programs

@@ -76,6 +76,16 @@ impl CameraMatrices {
         Ok(depth.in_units(self.view_units()))
     }
 
+    /// Returns the same, read with another range, or says why it cannot be.
+    #[cfg(feature = "files")]
+    pub(in crate::scene) fn read_clip(
+        &self,
+        range: Option<ClipRange>,
+    ) -> Result<ClipDepth, String> {
+        let depth = ClipDepth::read(self.projection, range.or(self.range))?;
+        Ok(depth.in_units(self.view_units()))
+    }
+
     /// Returns how many units of view space are one of world space.
     fn view_units(&self) -> f64 {
         DMat3::from_mat4(self.view).determinant().abs().cbrt()

@@ -11,6 +11,8 @@ pub use matrices::{CameraMatrices, ClipY};
 use super::values::{Checked, Fault, SMALLEST, direction, finite, positive, vector};
 use crate::image::{ClipRange, ImageSize};
 use table::CameraTable;
+#[cfg(feature = "files")]
+pub(super) use table::{read_matrix, write_matrix};
 
 /// A camera and the length of its rays: a pinhole at `eye` that looks at `target`, or whatever `matrices` project.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]

@@ -24,7 +24,7 @@ pub fn view(plane: &ViewPlane, scene: &Scene) -> View {
     let toward = fine(plane.forward * (OF_RAY * plane.ray_length));
     let near_plane = match scene.depth.as_ref().map(DepthImage::along) {
         _ if plane.is_parallel => plane.near,
-        Some(DepthAlong::Axis) => plane.near,
+        Some(DepthAlong::Axis | DepthAlong::Ndc | DepthAlong::Buffer) => plane.near,
         Some(DepthAlong::Ray) | None => 0.0,
     };
     View {
