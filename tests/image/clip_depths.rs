@@ -24,7 +24,7 @@ struct Surfaces {
 }
 
 impl Surfaces {
-    /// Places them so far along the axis of view that float32 can tell depths there; the wall hides half of the picture.
+    /// Places them where float32 can tell depths; the wall hides half of the picture.
     fn before(engine: &Engine) -> Self {
         let plane = engine.scene().view_plane();
         let reach = if plane.is_parallel {
