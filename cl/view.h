@@ -14,13 +14,16 @@ typedef struct {
     float4 column_step; // from a pixel to its right neighbour
     float4 row_step;    // from a pixel to the one below
     float4 first_pixel_rest, column_step_rest, row_step_rest;
+    float4 toward, toward_rest;        // the direction of all rays, if they are parallel; very long beside a ray, so
+                                       // that pixels seem to grow no wider along it
     float ray_length;                  // |E - S|
     float near_plane, near_plane_rest; // where depths are taken along the axis of view, the eye's distance from the
                                        // projection plane; 0: they are taken along the ray
     float hides_all;                   // a depth up to here hides all of any ray
     uint width;                        // pixels in a row
     uint height;
-    uint padding_0, padding_1;
+    uint is_parallel; // whether all rays are; depths are then taken along the axis of view
+    uint padding;
 } View;
 CHECK_SIZE(View, SIZEOF_VIEW);
 
@@ -78,11 +81,20 @@ INLINE floatv end_by_depth(const View *const view, const Ray *const ray, const f
     const finev missing = fine_fma(fine_negate(guess), guess, fine_dot3(ray->fine_origin, ray->fine_origin));
     const finev distance = fine_add(guess, fine_multiply(missing, to_finev(0.5f * inverse(to_plane))));
     const finev near_plane = uniform_fine(view->near_plane, view->near_plane_rest);
-    const floatv beyond = view->near_plane > 0.0f ? from_finev(fine_subtract(depth, near_plane)) *
-                                                        from_finev(distance) * (1.0f / view->near_plane)
-                                                  : from_finev(fine_subtract(depth, distance));
+    const floatv beyond = view->is_parallel         ? from_finev(fine_subtract(depth, near_plane))
+                          : view->near_plane > 0.0f ? from_finev(fine_subtract(depth, near_plane)) *
+                                                          from_finev(distance) * (1.0f / view->near_plane)
+                                                    : from_finev(fine_subtract(depth, distance));
     const floatv s = beyond * (1.0f / view->ray_length);
     return clamp(s, 0.0f, 1.0f);
+}
+
+// Returns the rays that begin at points of the plane.
+INLINE Ray ray_from(const View *const view, const fine3v origin, const float softening2) {
+    const fine3v toward = view->is_parallel ? fine3(view->toward, view->toward_rest) : origin;
+    const float3v direction = from_fine3(toward);
+    const floatv stretch = 0.5f * view->ray_length * twice_inverse_sqrt_(dot3(direction, direction));
+    return make_ray(origin, toward, stretch, splat(view->ray_length), softening2);
 }
 
 // Returns the rays through the centres of pixels, whatever hides their light.
@@ -93,9 +105,7 @@ INLINE Ray open_ray(const Screen *const screen, const uintv column, const uintv 
     const fine3v column_step = fine3(view->column_step, view->column_step_rest);
     const fine3v in_row = fine_fma3(row_step, count_to_finev(row), first);
     const fine3v origin = fine_fma3(column_step, count_to_finev(column), in_row);
-    const float3v toward = from_fine3(origin);
-    const floatv stretch = 0.5f * view->ray_length * twice_inverse_sqrt_(dot3(toward, toward));
-    return make_ray(origin, origin, stretch, splat(view->ray_length), screen->softening2);
+    return ray_from(view, origin, screen->softening2);
 }
 
 // Returns rays that begin so many pixels farther right and below, and end where the others do.
@@ -104,9 +114,7 @@ INLINE Ray moved_ray(const View *const view, const Ray *const ray, const floatv 
     const fine3v column_step = fine3(view->column_step, view->column_step_rest);
     const fine3v aside = fine_fma3(column_step, to_finev(right), ray->fine_origin);
     const fine3v origin = fine_fma3(row_step, to_finev(below), aside);
-    const float3v toward = from_fine3(origin);
-    const floatv stretch = 0.5f * view->ray_length * twice_inverse_sqrt_(dot3(toward, toward));
-    Ray moved = make_ray(origin, origin, stretch, ray->length, 0.0f);
+    Ray moved = ray_from(view, origin, 0.0f);
     moved.softening2 = ray->softening2;
     moved.end = ray->end;
     return moved;

@@ -197,7 +197,7 @@ pub struct Overrides {
     /// Which rays a pixel of the exact method stands for [default: the scene's, else footprint]
     #[arg(long, value_enum)]
     pub antialias: Option<AntialiasName>,
-    /// Depth image (.exr) of the scene's size, which hides the light behind it
+    /// Depth image (.exr, 16-bit .png, .raw or .f32) of the scene's size, which hides the light behind it
     #[arg(long, value_name = "FILE", requires = "scene")]
     pub depth: Option<PathBuf>,
     /// What the depths of --depth are lengths of [default: ray]
@@ -237,8 +237,12 @@ pub enum TableName {
 pub enum DepthAlongName {
     /// The view ray: a distance from the eye
     Ray,
-    /// The direction of view, as depth buffers have it
+    /// The direction of view, as most renderers' Z
     Axis,
+    /// z / w behind the projection of the scene's camera
+    Ndc,
+    /// The same as depth buffers hold it, 0 to 1
+    Buffer,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -318,7 +322,7 @@ impl Overrides {
         }
         scene.image = self.size.unwrap_or(scene.image);
         if let Some(file) = &self.depth {
-            scene.depth = Some(self.open_depth(file, scene.image)?);
+            scene.depth = Some(self.open_depth(file, scene)?);
         }
         scene.integration.method = self.method(scene.integration.method, keys)?;
         if let Some(name) = self.antialias {
@@ -366,15 +370,22 @@ impl Overrides {
         })
     }
 
-    /// Opens the image of `--depth`, for an image of this size.
-    fn open_depth(&self, file: &Path, image: ImageSize) -> Result<DepthImage, Error> {
+    /// Opens the image of `--depth`, for a scene.
+    fn open_depth(&self, file: &Path, scene: &Scene) -> Result<DepthImage, Error> {
+        let image = scene.image;
         let mut options = DepthOptions::from(match self.depth_along {
             Some(DepthAlongName::Axis) => DepthAlong::Axis,
+            Some(DepthAlongName::Ndc) => DepthAlong::Ndc,
+            Some(DepthAlongName::Buffer) => DepthAlong::Buffer,
             Some(DepthAlongName::Ray) | None => DepthAlong::Ray,
         });
         options.channel.clone_from(&self.depth_channel);
         options.scale = self.depth_scale.unwrap_or(options.scale);
         options.none = self.depth_none;
+        options.size = Some(image);
+        if let (false, Some(matrices)) = (options.along.is_length(), &scene.camera.matrices) {
+            options.clip = Some(matrices.clip_depth()?);
+        }
         let depth = DepthImage::open(file, options)?;
         let size = depth.size();
         if size != image {

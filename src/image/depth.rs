@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::ImageSize;
+use super::{ClipDepth, ImageSize};
 use crate::error::{Result, SceneError};
 
 /// What a depth is measured along, from the eye.
@@ -17,8 +17,20 @@ pub enum DepthAlong {
     /// The view ray itself: a distance.
     #[default]
     Ray,
-    /// The ray's part along the direction of view, as in depth buffers and most renderers' Z.
+    /// The ray's part along the direction of view, as most renderers' Z.
     Axis,
+    /// No length: z / w of clip space behind a projection ([`ClipDepth`]). An image holds what that is along the axis.
+    Ndc,
+    /// The same as a depth buffer holds it: from 0 to 1, also where z / w goes from -1 to 1.
+    Buffer,
+}
+
+impl DepthAlong {
+    /// Returns whether depths are lengths.
+    #[must_use]
+    pub fn is_length(self) -> bool {
+        matches!(self, Self::Ray | Self::Axis)
+    }
 }
 
 /// A depth for every pixel, world units, by rows from the top left; infinite where nothing hides the light. Clones
@@ -44,8 +56,13 @@ pub struct DepthOptions {
     /// World units to a unit of the file: 0.01 for centimetres in a scene in metres. Negative where the file's depths
     /// are, never 0.
     pub scale: f64,
-    /// The value of the file that means that nothing is there, such as 0, -1 or NaN; infinity always does.
+    /// The value of the file that means that nothing is there, such as 0, -1 or NaN; infinity always does. That of a
+    /// PNG is a whole number up to 65535.
     pub none: Option<f64>,
+    /// What depths are lengths of that are none themselves: needed for [`DepthAlong::Ndc`] and [`DepthAlong::Buffer`].
+    pub clip: Option<ClipDepth>,
+    /// The size of an image in a file that does not say it: float32 without a header.
+    pub size: Option<ImageSize>,
 }
 
 impl Default for DepthOptions {
@@ -55,6 +72,8 @@ impl Default for DepthOptions {
             channel: None,
             scale: 1.0,
             none: None,
+            clip: None,
+            size: None,
         }
     }
 }
@@ -75,8 +94,8 @@ pub(super) struct Origin {
     /// The full path.
     pub(super) file: PathBuf,
     pub(super) options: DepthOptions,
-    /// The channel's name, with its part's.
-    pub(super) channel: String,
+    /// The channel's name, with its part's; `None` of a file that has no channels.
+    pub(super) channel: Option<String>,
     /// All channels, where the name of this one left a doubt.
     pub(super) doubt: Option<String>,
 }
@@ -97,33 +116,80 @@ impl DepthImage {
     /// negative.
     pub fn new(size: ImageSize, along: DepthAlong, values: Vec<f32>) -> Result<Self> {
         let fault = |message: String| Err(SceneError::value("depth", message).into());
-        if values.len() != size.pixels() {
-            return fault(format!(
-                "{} values, {}x{} pixels need {}",
-                values.len(),
-                size.width,
-                size.height,
-                size.pixels()
-            ));
+        check_count(size, &values)?;
+        if !along.is_length() {
+            let message = "depths of clip space are no lengths: `DepthImage::from_clip` takes their projection";
+            return fault(message.to_owned());
         }
         let is_none = |depth: &f32| depth.is_nan() || *depth < 0.0;
         if let Some(index) = values.iter().position(is_none) {
-            let width = size.width as usize;
             return fault(format!(
-                "{} at column {}, row {}, counted from 0; a depth is a number from 0 on, infinite where nothing hides \
-                 the light",
+                "{} {}; a depth is a number from 0 on, infinite where nothing hides the light",
                 values[index],
-                index % width,
-                index / width
+                place(size, index)
             ));
         }
-        Ok(Self {
+        Ok(Self::of_checked(size, along, values))
+    }
+
+    /// Makes a depth image of depths of clip space, which it turns into lengths along the axis of view: NDC depths, or
+    /// with [`DepthAlong::Buffer`] those of a depth buffer, by rows from the top left. At the far plane, to which
+    /// buffers are cleared, nothing hides the light, nor where a value is infinite.
+    ///
+    /// # Errors
+    /// [`Error::Scene`](crate::Error::Scene) if there is not one value for each pixel, one is not a number or lies
+    /// beyond the planes, or `along` is a length.
+    pub fn from_clip(
+        size: ImageSize,
+        along: DepthAlong,
+        clip: &ClipDepth,
+        values: Vec<f32>,
+    ) -> Result<Self> {
+        Self::from_scaled_clip(size, along, clip, 1.0, values)
+    }
+
+    /// The same of values that are to be multiplied first.
+    pub(super) fn from_scaled_clip(
+        size: ImageSize,
+        along: DepthAlong,
+        clip: &ClipDepth,
+        scale: f64,
+        mut values: Vec<f32>,
+    ) -> Result<Self> {
+        check_count(size, &values)?;
+        let fault = |message: String| SceneError::value("depth", message);
+        if along.is_length() {
+            let message = "lengths have no projection: `DepthImage::new` takes them";
+            return Err(fault(message.to_owned()).into());
+        }
+        for (index, value) in values.iter_mut().enumerate() {
+            if *value == f32::INFINITY {
+                continue;
+            }
+            let found = f64::from(*value) * scale;
+            let depth = clip.along_axis_of(along, found).ok_or_else(|| {
+                let low = match along {
+                    DepthAlong::Buffer => 0.0,
+                    _ => clip.range().low(),
+                };
+                fault(format!(
+                    "{found} {}; depths of clip space go from {low} to 1 between the planes of this projection",
+                    place(size, index)
+                ))
+            })?;
+            *value = depth as f32;
+        }
+        Ok(Self::of_checked(size, DepthAlong::Axis, values))
+    }
+
+    fn of_checked(size: ImageSize, along: DepthAlong, values: Vec<f32>) -> Self {
+        Self {
             size,
             along,
             values: Arc::new(values),
             #[cfg(feature = "files")]
             origin: None,
-        })
+        }
     }
 
     /// Remembers what the image was read from.
@@ -144,7 +210,7 @@ impl DepthImage {
         self.size
     }
 
-    /// Returns what the values are measured along.
+    /// Returns what the values are measured along: ray or axis.
     #[must_use]
     pub fn along(&self) -> DepthAlong {
         self.along
@@ -165,6 +231,30 @@ impl DepthImage {
     pub(crate) fn shares_values(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.values, &other.values)
     }
+}
+
+fn check_count(size: ImageSize, values: &[f32]) -> Result<()> {
+    if values.len() == size.pixels() {
+        return Ok(());
+    }
+    let message = format!(
+        "{} values, {}x{} pixels need {}",
+        values.len(),
+        size.width,
+        size.height,
+        size.pixels()
+    );
+    Err(SceneError::value("depth", message).into())
+}
+
+/// Says where a pixel is.
+fn place(size: ImageSize, index: usize) -> String {
+    let width = size.width as usize;
+    format!(
+        "at column {}, row {}, counted from 0",
+        index % width,
+        index / width
+    )
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Depth images in OpenEXR files.
+//! Depth images in files.
 
 use std::path::Path;
 
@@ -6,15 +6,16 @@ use exr::image::{AnyChannel, FlatSamples, Layer};
 use exr::prelude::{AnyChannels, Encoding, Image, LayerAttributes, WritableImage};
 
 use super::depth::Origin;
-use super::depth_channel::{Choice, choose, listed, named};
-use super::openexr::{ChannelId, ChannelName, OpenExr, Plane};
-use super::{DepthImage, DepthOptions, ImageFormat};
+use super::depth_source::{Stored, Unread, room_for};
+use super::{ClipRange, DepthImage, DepthOptions, ImageFormat};
 use crate::error::{Error, Result};
 use crate::output::Output;
 use crate::shown::shown;
 
 impl DepthImage {
-    /// Reads an OpenEXR image. Where the data window leaves a part of the display window out, nothing hides the light.
+    /// Reads an image: OpenEXR; where the name ends in `.png` 16-bit grey, of which 65535 is 1; where it ends in `.raw`
+    /// or `.f32` float32, little endian by rows from the top left, of the size in `options`. Where the data window of
+    /// an OpenEXR file leaves a part of the display window out, nothing hides the light.
     ///
     /// Without a name in `options` the channel is the one called `Z`, else the one whose name, layer or part says
     /// depth, else R, V or Y if it is alone, else red where red, green and blue are equal everywhere. The Z of a layer
@@ -30,36 +31,45 @@ impl DepthImage {
             let reason = format!("scale {}: it must be a number but 0", options.scale);
             return Err(fail(reason));
         }
-        let file = OpenExr::open(path)?;
-        let all = file.channels();
-        let (channel, plane, is_guess) = find(&file, &all, &options).map_err(fail)?;
-        let none = options.none.map(|none| file.as_stored(channel.id, none));
-        let size = file.display();
-        let mut values = Vec::new();
-        let too_large = |_| {
-            fail(format!(
-                "{} MiB needed, more than the system grants",
-                size.pixels() >> 18
-            ))
+        let stored = match Stored::open(path, &options) {
+            Ok(stored) => stored,
+            Err(Unread::Error(error)) => return Err(error),
+            Err(Unread::Reason(reason)) => return Err(fail(reason)),
         };
-        values.try_reserve_exact(size.pixels()).map_err(too_large)?;
-        values.resize(size.pixels(), f32::INFINITY);
-        plane.place(size, |pixel, value| {
-            let is_none =
-                none.is_some_and(|none| value == none || (value.is_nan() && none.is_nan()));
-            if !is_none && value != f32::INFINITY {
-                values[pixel] = (f64::from(value) * options.scale) as f32;
+        let size = stored.size;
+        let mut values = room_for(size).map_err(fail)?;
+        let scale = if options.along.is_length() {
+            options.scale
+        } else {
+            1.0
+        };
+        values.extend(
+            stored
+                .values
+                .iter()
+                .map(|&value| match stored.is_none(value) {
+                    true => f32::INFINITY,
+                    false => (f64::from(value) * scale) as f32,
+                }),
+        );
+        let made = match (options.along.is_length(), &options.clip) {
+            (true, _) => Self::new(size, options.along, values),
+            (false, Some(clip)) => {
+                Self::from_scaled_clip(size, options.along, clip, options.scale, values)
             }
-        });
-        let origin = Origin {
-            file: std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
-            channel: channel.full(),
-            doubt: is_guess.then(|| listed(&all)),
-            options,
+            (false, None) => {
+                let reason = "its depths are of clip space, and neither the camera nor the depth has a `projection`";
+                return Err(fail(reason.to_owned()));
+            }
         };
-        match Self::new(size, origin.options.along, values) {
-            Ok(image) => Ok(image.read_from(origin)),
-            Err(Error::Scene(fault)) => Err(fail(refused(&fault.message, &origin, &plane))),
+        match made {
+            Ok(image) => Ok(image.read_from(Origin {
+                file: std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
+                channel: stored.channel,
+                doubt: stored.doubt,
+                options,
+            })),
+            Err(Error::Scene(fault)) => Err(fail(refused(&fault.message, &stored, &options))),
             Err(other) => Err(other),
         }
     }
@@ -81,7 +91,7 @@ impl DepthImage {
     /// that was made in code.
     #[must_use]
     pub fn channel(&self) -> Option<&str> {
-        self.origin().map(|origin| origin.channel.as_str())
+        self.origin().and_then(|origin| origin.channel.as_deref())
     }
 
     /// Returns all channels of the file, as a list, where the name of the one that was read left a doubt.
@@ -116,60 +126,34 @@ impl DepthImage {
     }
 }
 
-/// Finds and decodes the channel; says whether its name left a doubt.
-fn find<'a>(
-    file: &OpenExr,
-    all: &'a [ChannelName],
-    options: &DepthOptions,
-) -> std::result::Result<(&'a ChannelName, Plane, bool), String> {
-    let one = |id: ChannelId| {
-        let plane = file.planes(&[id])?.pop();
-        plane.ok_or_else(|| "it has no pixels".to_owned())
-    };
-    let choice = match &options.channel {
-        Some(name) => Choice::Sure(named(all, name)?),
-        None => choose(all)?,
-    };
-    match choice {
-        Choice::Sure(channel) => Ok((channel, one(channel.id)?, false)),
-        Choice::Guess(channel) => Ok((channel, one(channel.id)?, true)),
-        Choice::IfEqual(rgb) => {
-            let mut planes = file.planes(&rgb.map(|channel| channel.id))?;
-            let [red, green, blue] = planes.as_slice() else {
-                return Err("it has no pixels".to_owned());
-            };
-            let is_equal = |(a, b): (&f32, &f32)| a == b || (a.is_nan() && b.is_nan());
-            let others = [green, blue];
-            if others
-                .iter()
-                .all(|other| red.values.iter().zip(&other.values).all(is_equal))
-            {
-                return Ok((rgb[0], planes.swap_remove(0), true));
-            }
-            Err(format!(
-                "red, green and blue differ, so none is depth: name the right channel as the depth's `channel`; {}",
-                listed(all)
-            ))
-        }
-    }
-}
-
 /// Says which channel holds what is no depth, and how to say what it means.
-fn refused(fault: &str, origin: &Origin, plane: &Plane) -> String {
-    let has_nan = plane.values.iter().any(|value| value.is_nan());
-    let finite = || plane.values.iter().filter(|value| value.is_finite());
+fn refused(fault: &str, stored: &Stored, options: &DepthOptions) -> String {
+    let values = &stored.values;
+    let has_nan = values.iter().any(|value| value.is_nan());
+    let finite = || values.iter().filter(|value| value.is_finite());
     let negative = finite().filter(|value| **value < 0.0).count();
     let lowest = finite().fold(f32::INFINITY, |low, value| low.min(*value));
-    let advice = match (has_nan, negative) {
+    let range = options.clip.map(|clip| clip.range());
+    let advice = match (has_nan, options.along.is_length()) {
         (true, _) => "if NaN means that nothing is there, give `none = nan`".to_owned(),
-        (false, negative) if 2 * negative > finite().count() => {
+        (false, false) if negative > 0 && range == Some(ClipRange::ZeroToOne) => {
+            "if the projection is OpenGL's, give `range = \"-1..1\"`".to_owned()
+        }
+        (false, false) => {
+            "if they are lengths, give `along = \"axis\"` or `along = \"ray\"`; if they are an integer's, give `scale`"
+                .to_owned()
+        }
+        (false, true) if 2 * negative > finite().count() => {
             "if the depths are negative because they lie before the camera, give `scale = -1`; if they are another \
              pass, name the right channel as `channel`"
                 .to_owned()
         }
         _ => format!("if {lowest} means that nothing is there, give `none = {lowest}`"),
     };
-    format!("channel {}: {fault}; {advice}", shown(&origin.channel))
+    match &stored.channel {
+        Some(channel) => format!("channel {}: {fault}; {advice}", shown(channel)),
+        None => format!("{fault}; {advice}"),
+    }
 }
 
 #[cfg(test)]

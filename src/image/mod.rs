@@ -1,6 +1,7 @@
 //! Images: depth, linear radiance, the picture made of it, what is behind it, files, and comparison.
 
 mod background;
+mod clip;
 mod compare;
 mod depth;
 #[cfg(feature = "files")]
@@ -11,6 +12,8 @@ mod display;
 #[cfg(feature = "files")]
 mod encode;
 mod exposure;
+#[cfg(feature = "files")]
+mod depth_source;
 #[cfg(feature = "files")]
 mod file;
 #[cfg(feature = "files")]
@@ -24,6 +27,8 @@ mod srgb;
 mod tone_map;
 
 pub use background::{Background, BackgroundImage};
+pub use clip::{ClipDepth, ClipRange};
+pub(crate) use clip::{axis_of, check_matrix, rows};
 pub use compare::{Difference, compare};
 pub use depth::{DepthAlong, DepthImage, DepthOptions};
 pub use display::{Alpha, Display};

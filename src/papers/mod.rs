@@ -7,7 +7,7 @@ mod table_2010;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
-use glam::{DQuat, DVec3};
+use glam::{DMat4, DQuat, DVec3};
 
 pub use occluders::tetrahedra;
 pub use table_2010::{Cell2010, PAPER_CPU_FPS, TABLE_2010, camera_2010, single_threaded_fps};
@@ -111,11 +111,15 @@ impl Table {
 }
 
 /// Returns the scene seen from frame `frame` of a turn of [`FRAMES_PER_TURN`] around the target, about the camera's up
-/// vector.
+/// vector; by matrices around the world's origin, about z.
 pub fn turned(scene: &Scene, frame: u32) -> Scene {
     let mut turned = scene.clone();
     let camera = &mut turned.camera;
     let angle = TAU * f64::from(frame % FRAMES_PER_TURN) / f64::from(FRAMES_PER_TURN);
+    if let Some(matrices) = &mut camera.matrices {
+        matrices.view *= DMat4::from_rotation_z(-angle);
+        return turned;
+    }
     let turn = DQuat::from_axis_angle(camera.up.normalize(), angle);
     camera.eye = camera.target + turn * (camera.eye - camera.target);
     turned

@@ -98,7 +98,11 @@ impl PixelView<'_> {
             source.field.breaks(&ray, &mut places);
             for s in &places {
                 let s = s.clamp(0.0, 1.0);
-                let pixel_there = pixel * (to_plane + s * self.plane.ray_length) / to_plane;
+                let growth = match self.plane.is_parallel {
+                    true => 1.0,
+                    false => (to_plane + s * self.plane.ray_length) / to_plane,
+                };
+                let pixel_there = pixel * growth;
                 least = least.min(self.to_core(source, &ray, s, with_ends) / pixel_there);
             }
         }

@@ -2,7 +2,7 @@
 //! Depths in other units give a black picture, or one in which nothing is hidden, and no fault.
 
 use super::{Scene, ViewPlane};
-use crate::image::{DepthAlong, DepthImage, ImageSize};
+use crate::image::{DepthImage, ImageSize};
 use crate::shown::shown;
 
 /// Shares of the depths from which on it is likely that they are in other units. What lies before the plane is black:
@@ -94,15 +94,12 @@ impl Counts {
         for (row, values) in rows.enumerate() {
             let mut pixel = plane.first_pixel + plane.row_step * row as f64;
             for &value in values {
-                let to_plane = pixel.length();
+                let to_plane = plane.before_plane(pixel);
                 pixel += plane.column_step;
                 if f64::from(value) >= NOWHERE {
                     continue;
                 }
-                let distance = match depth.along() {
-                    DepthAlong::Ray => f64::from(value),
-                    DepthAlong::Axis => f64::from(value) * to_plane / plane.near,
-                };
+                let distance = plane.distance(value, depth.along(), to_plane);
                 counts.with += 1;
                 counts.zero += usize::from(value == 0.0);
                 counts.before += usize::from(distance < to_plane);
@@ -128,12 +125,12 @@ fn warnings(depth: &DepthImage, scene: &Scene, counts: &Counts) -> Vec<String> {
     let is_over = |count: usize, share: f64| others > 0 && count as f64 >= share * others as f64;
     let before = counts.before - counts.zero;
     let is_before = is_over(before, TOO_MANY_BEFORE);
-    let looks_farther = camera.eye.distance(camera.target) > 1.0;
+    let looks_farther = scene.focus() > 1.0;
     let is_everywhere = counts.with == counts.pixels && looks_farther;
     if others > 0 && counts.farthest <= 1.0 && (is_everywhere || is_before) {
         found.push(format!(
-            "all depths lie between {} and {}: likely those of a z-buffer, which are no lengths and cannot be read, or \
-             in other units; write them in world units, or give `scale`",
+            "all depths lie between {} and {}: likely those of a z-buffer, which are no lengths, or in other units; \
+             give `along = \"ndc\"` with a projection, or `scale`",
             counts.nearest, counts.farthest
         ));
     } else if is_before {
@@ -173,6 +170,7 @@ fn percent(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::image::DepthAlong;
     use crate::scene::Camera;
     use glam::DVec3;
 

@@ -26,9 +26,8 @@ impl Scene {
     /// source that says by its peak how bright it is.
     #[must_use]
     pub fn fitting_exposure(&self) -> f64 {
-        let (camera, reduction) = (&self.camera, self.integration.reduction);
-        let height =
-            2.0 * camera.eye.distance(camera.target) * (0.5 * camera.fov_y.to_radians()).tan();
+        let reduction = self.integration.reduction;
+        let height = self.camera.height_at(self.focus());
         let mut brightest: f64 = 0.0;
         let mut has_peak = self.decay.is_some();
         self.for_each_shared(&mut |source| {

@@ -76,11 +76,27 @@ impl Extent {
         self.ended.join(other.ended.low, other.ended.high);
     }
 
+    /// Returns how far from the eye what a camera looks at is: its target, or where its matrices have none the middle
+    /// of all sources, if that lies before the projection plane.
+    fn focus(&self, camera: &Camera) -> f64 {
+        if camera.matrices.is_none() {
+            return camera.eye.distance(camera.target);
+        }
+        let (eye, axis) = camera.eye_and_axis();
+        let mut all = self.endless;
+        all.join(self.ended.low, self.ended.high);
+        let ahead = (0.5 * (all.low + all.high) - eye).dot(axis);
+        match ahead > camera.near {
+            true => ahead,
+            false => camera.near + camera.near.abs().max(1.0),
+        }
+    }
+
     /// Returns the length of rays that pass all of it.
     fn ray_length(&self, camera: &Camera) -> f64 {
-        let beyond = camera.eye.distance(camera.target);
-        let endless = self.endless.farthest_from(camera.eye).max(beyond);
-        let ended = self.ended.farthest_from(camera.eye) - camera.near;
+        let (eye, beyond) = (camera.eye_and_axis().0, self.focus(camera));
+        let endless = self.endless.farthest_from(eye).max(beyond);
+        let ended = self.ended.farthest_from(eye) - camera.near;
         (TIMES_BEYOND * (endless - camera.near))
             .max(ended)
             .min(LONGEST)
@@ -101,10 +117,15 @@ macro_rules! define_extent {
 for_each_kind!(define_extent);
 
 impl Scene {
+    /// Returns how far from the eye what the camera looks at is, world units.
+    pub(super) fn focus(&self) -> f64 {
+        self.extent().focus(&self.camera)
+    }
+
     /// Returns the length of every ray, `|E - S|`, world units: the camera's, or where it names none one that passes
-    /// all sources. That is, measured from the projection plane, 5 times as far as the target and the cores of sources
-    /// without a reach, and no less far than the light of those with one; at most 1e9. Cores are taken by the box
-    /// around them, cylinders and beams by the point or tip that they name.
+    /// all sources. That is, measured from the projection plane, 5 times as far as the target (of matrices: the middle
+    /// of all sources) and the cores of sources without a reach, and no less far than the light of those with one; at
+    /// most 1e9. Cores are taken by the box around them, cylinders and beams by the point or tip that they name.
     #[must_use]
     pub fn ray_length(&self) -> f64 {
         let camera = &self.camera;

@@ -16,11 +16,10 @@ impl Scene {
     /// Says that no core is where a ray might meet it: then at most the glow around cores is seen.
     pub(super) fn out_of_view(&self) -> Option<SceneError> {
         let plane = self.view_plane();
-        let forward = (self.camera.target - self.camera.eye).normalize();
-        let eye = self.camera.eye.dot(forward);
-        let reach = plane.first_pixel.length() + plane.ray_length;
+        let (forward, eye) = (plane.forward, plane.eye.dot(plane.forward));
+        let reach = plane.farthest_pixel(self.image) + plane.ray_length;
         let unseen = |core: &Core| match core.reach(forward) - eye {
-            ahead if ahead <= 0.0 => Some(Unseen::Behind),
+            ahead if ahead <= plane.near.min(0.0) => Some(Unseen::Behind),
             ahead if ahead < plane.near => Some(Unseen::BeforePlane),
             _ if core.least_distance(plane.eye) > reach => Some(Unseen::Beyond),
             _ => None,
@@ -40,15 +39,21 @@ impl Scene {
             !is_seen
         });
         let (key, why) = first.filter(|_| !is_seen)?;
-        let length = plane.ray_length;
+        let (length, has_matrices) = (plane.ray_length, self.camera.matrices.is_some());
         let (place, advice) = match why {
             _ if is_mixed => (
                 "behind the projection plane or beyond the end of the rays".to_owned(),
-                "see to camera.eye, camera.target, camera.near and camera.ray_length",
+                match has_matrices {
+                    true => "see to camera.view, camera.near and camera.ray_length",
+                    false => "see to camera.eye, camera.target, camera.near and camera.ray_length",
+                },
             ),
             Unseen::Behind => (
                 "behind the eye".to_owned(),
-                "turn the camera, by camera.target",
+                match has_matrices {
+                    true => "turn the camera, by camera.view",
+                    false => "turn the camera, by camera.target",
+                },
             ),
             Unseen::BeforePlane => (
                 format!(

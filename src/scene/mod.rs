@@ -30,7 +30,7 @@ mod warnings;
 
 use glam::DVec3;
 
-pub use camera::Camera;
+pub use camera::{Camera, CameraMatrices, ClipY};
 pub use chain::{Dashes, ElectricArc};
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;

@@ -63,8 +63,13 @@ pub struct ViewPlane {
     pub row_step: DVec3,
     /// `|E - S|`, world units.
     pub ray_length: f64,
-    /// From the eye to the plane, along the direction of view, world units.
+    /// From the eye to the plane, along the axis of view, world units.
     pub near: f64,
+    /// The axis of view, of length 1.
+    pub forward: DVec3,
+    /// Whether all rays go along the axis of view, as those of an orthographic camera do. Depths are then measured from
+    /// the eye's plane.
+    pub is_parallel: bool,
 }
 
 impl ViewPlane {
@@ -72,24 +77,16 @@ impl ViewPlane {
     /// ([`Scene::ray_length`](super::Scene::ray_length)).
     #[must_use]
     pub fn new(camera: &Camera, image: ImageSize, ray_length: f64) -> Self {
-        let forward = (camera.target - camera.eye).normalize();
-        let right = forward.cross(camera.up).normalize();
-        let up = right.cross(forward);
-        let half_height = camera.near * (camera.fov_y.to_radians() / 2.0).tan();
-        let pixel = 2.0 * half_height / f64::from(image.height);
-        let middle_column = (f64::from(image.width) - 1.0) / 2.0;
-        let middle_row = (f64::from(image.height) - 1.0) / 2.0;
-        let column_step = right * pixel;
-        let row_step = -up * pixel;
+        let grid = camera.grid(image);
         Self {
-            eye: camera.eye,
-            first_pixel: forward * camera.near
-                - column_step * middle_column
-                - row_step * middle_row,
-            column_step,
-            row_step,
+            eye: grid.eye,
+            first_pixel: grid.first_pixel,
+            column_step: grid.column_step,
+            row_step: grid.row_step,
             ray_length,
             near: camera.near,
+            forward: grid.forward,
+            is_parallel: grid.is_parallel,
         }
     }
 
@@ -97,16 +94,31 @@ impl ViewPlane {
     /// 2010, eq. 13, 14). A depth begins at the eye, s at the plane.
     #[must_use]
     pub fn end(&self, ray: &Ray, depth: f32, along: DepthAlong) -> f64 {
-        let to_plane = ray.origin.distance(self.eye);
-        let depth = f64::from(depth);
-        let distance = match along {
-            DepthAlong::Ray => depth,
-            DepthAlong::Axis => depth * to_plane / self.near,
-        };
+        let to_plane = self.before_plane(ray.origin - self.eye);
+        let distance = self.distance(depth, along, to_plane);
         ((distance - to_plane) / self.ray_length).clamp(0.0, 1.0)
     }
 
-    /// Makes the ray through the centre of a pixel.
+    /// Returns how far along its ray a point of the plane, seen from the eye, is from where depths begin.
+    pub(crate) fn before_plane(&self, point: DVec3) -> f64 {
+        match self.is_parallel {
+            true => self.near,
+            false => point.length(),
+        }
+    }
+
+    /// Returns the distance along a ray that a depth stands for, `to_plane` that of its beginning.
+    pub(crate) fn distance(&self, depth: f32, along: DepthAlong, to_plane: f64) -> f64 {
+        let depth = f64::from(depth);
+        match along {
+            _ if self.is_parallel => depth,
+            DepthAlong::Ray => depth,
+            // An image holds no others.
+            DepthAlong::Axis | DepthAlong::Ndc | DepthAlong::Buffer => depth * to_plane / self.near,
+        }
+    }
+
+    /// Makes the ray through a pixel, where the camera's jitter puts it: without one through its centre.
     #[must_use]
     pub fn ray(&self, column: u32, row: u32) -> Ray {
         self.ray_at(f64::from(column), f64::from(row))
@@ -116,9 +128,24 @@ impl ViewPlane {
     #[must_use]
     pub fn ray_at(&self, column: f64, row: f64) -> Ray {
         let to_plane = self.first_pixel + self.column_step * column + self.row_step * row;
+        let direction = match self.is_parallel {
+            true => self.forward,
+            false => to_plane.normalize(),
+        };
         Ray {
             origin: self.eye + to_plane,
-            span: to_plane.normalize() * self.ray_length,
+            span: direction * self.ray_length,
         }
+    }
+
+    /// Returns the distance of the farthest pixel of an image from the eye.
+    pub(crate) fn farthest_pixel(&self, image: ImageSize) -> f64 {
+        let corner = |(column, row): (u32, u32)| {
+            let steps = self.column_step * f64::from(column) + self.row_step * f64::from(row);
+            (self.first_pixel + steps).length()
+        };
+        let (right, below) = (image.width.max(1) - 1, image.height.max(1) - 1);
+        let corners = [(0, 0), (right, 0), (0, below), (right, below)];
+        corners.into_iter().map(corner).fold(0.0, f64::max)
     }
 }

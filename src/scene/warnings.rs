@@ -92,7 +92,8 @@ impl Scene {
 
     fn narrow_view(&self) -> Option<SceneError> {
         let fov_y = self.camera.fov_y;
-        (fov_y <= NARROWEST).then(|| {
+        let looks = self.camera.matrices.is_none();
+        (looks && fov_y <= NARROWEST).then(|| {
             let message = format!(
                 "{fov_y} degrees are a narrow view; if radians were meant, write {:.1}",
                 fov_y.to_degrees()

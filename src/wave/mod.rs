@@ -135,8 +135,7 @@ impl Wave {
         film: FilmFormat,
     ) -> Result<Plan> {
         let plane = scene.view_plane();
-        // The corner pixels are the farthest from the eye.
-        let reach = plane.first_pixel.length() + plane.ray_length;
+        let reach = plane.farthest_pixel(scene.image) + plane.ray_length;
         let anchor = Anchor::new(scene, plane.eye, reach, plane.ray_length);
         let depths = scene.depth.as_ref().map(DepthImage::shared_values);
         self.depths.upload(compute, depths)?;
@@ -169,7 +168,7 @@ impl Wave {
             origin,
             reach,
             measure: pack::even_decay(scene),
-            pixel: 0.0,
+            pixel: pack::Pixel::None,
             tolerance: scene.integration.method.tolerance(),
             reduction: scene.integration.reduction,
         };

@@ -105,8 +105,8 @@ impl Plan {
     pub(super) fn passes(&self, part: &Part) -> Vec<TilePass> {
         match (self.task.rays, &self.view) {
             (Rays::Tiles, Some(view)) => {
-                let [x, y, z, _] = view.row_step;
-                let pixel_step = glam::Vec3::new(x, y, z).length();
+                let side = |[x, y, z, _]: [f32; 4]| glam::Vec3::new(x, y, z).length();
+                let pixel_step = side(view.row_step).max(side(view.column_step));
                 let (size, tolerance) = (self.work.first_tile_size, self.tolerance);
                 let width = (view.width, pixel_step);
                 tiles::passes(part, &self.counts, width, size, tolerance)

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests fail by panicking
 
 pub mod apart;
+pub mod engines;
 pub mod host;
 #[cfg(unix)] // loads a shared library
 pub mod layer;

@@ -3,7 +3,7 @@
 use crate::common;
 use crate::common::lane_widths;
 use energywave::internals::b_spline;
-use energywave::internals::pack::{Anchor, Sources};
+use energywave::internals::pack::{Anchor, Pixel, Sources};
 use energywave::internals::{self, Argument, Compute, DeviceBuffer, KINDS, Program};
 use glam::DVec3;
 
@@ -100,7 +100,7 @@ pub const ANCHOR: Anchor = Anchor {
     origin: DVec3::ZERO,
     reach: 20.0,
     measure: 1.0,
-    pixel: 0.0,
+    pixel: Pixel::None,
     tolerance: 1e-3,
     reduction: energywave::scene::Reduction::Sum,
 };

@@ -92,8 +92,12 @@ typedef struct {
 DepthScale depth_scale(const View *const view, const Ray *const ray) {
     const floatv to_plane = ray->length * inverse(ray->stretch);
     const floatv per_length = inverse(ray->length);
-    const bool is_along_ray = view->near_plane == 0.0f;
     const float near = view->near_plane;
+    if (view->is_parallel) {
+        const DepthScale even = {near + ray->length, per_length};
+        return even;
+    }
+    const bool is_along_ray = near == 0.0f;
     const DepthScale scale = {is_along_ray ? to_plane + ray->length : near * fma(ray->length, inverse(to_plane), 1.0f),
                               is_along_ray ? per_length : to_plane * per_length * (1.0f / near)};
     return scale;

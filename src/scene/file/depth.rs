@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::DMat4;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::error::SceneError;
-use crate::image::{DepthAlong, DepthImage, DepthOptions};
+use crate::image::{ClipDepth, ClipRange, DepthAlong, DepthImage, DepthOptions};
+use crate::scene::Scene;
+use crate::scene::camera::{read_matrix, write_matrix};
 use crate::scene::values::{Fault, finite};
 
 #[derive(Deserialize, Serialize)]
@@ -26,6 +29,15 @@ pub(super) struct DepthTable {
         serialize_with = "write_none"
     )]
     none: Option<f64>,
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "read_matrix",
+        serialize_with = "write_matrix"
+    )]
+    projection: Option<DMat4>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    range: Option<ClipRange>,
 }
 
 impl DepthTable {
@@ -38,18 +50,54 @@ impl DepthTable {
             channel: options.channel.clone(),
             scale: options.scale,
             none: options.none,
+            projection: options.clip.map(|clip| clip.projection()),
+            range: options.clip.map(|clip| clip.range()),
         })
     }
 
-    /// Reads the image; its path is from `folder`.
-    pub(super) fn open(&self, folder: &Path) -> Result<DepthImage, SceneError> {
+    /// Reads the image of a scene; its path is from `folder`.
+    pub(super) fn open(&self, folder: &Path, scene: &Scene) -> Result<DepthImage, SceneError> {
         self.check_scale().map_err(|fault| fault.of("depth"))?;
+        let clip = self.clip(scene).map_err(|fault| fault.of("depth"))?;
         let mut options = DepthOptions::from(self.along);
         options.channel.clone_from(&self.channel);
         options.scale = self.scale;
         options.none = self.none;
+        options.clip = clip;
+        options.size = Some(scene.image);
         DepthImage::open(folder.join(&self.file), options)
             .map_err(|error| SceneError::value("depth.file", error.to_string()))
+    }
+
+    /// Returns what depths are that are no lengths: by the projection of the table, or the camera's.
+    fn clip(&self, scene: &Scene) -> Result<Option<ClipDepth>, Fault> {
+        if self.along.is_length() {
+            for (key, is_there) in [
+                ("projection", self.projection.is_some()),
+                ("range", self.range.is_some()),
+            ] {
+                if is_there {
+                    let message = "it is for depths that are no lengths: along = \"ndc\" or along = \"buffer\"";
+                    return Err(Fault::new(key, message));
+                }
+            }
+            return Ok(None);
+        }
+        let (key, clip) = match (self.projection, &scene.camera.matrices) {
+            (Some(projection), _) => ("projection", ClipDepth::read(projection, self.range)),
+            (None, Some(matrices)) => ("range", matrices.read_clip(self.range)),
+            (None, None) => {
+                let message = "such depths are behind a projection, and the camera has none: give it here as \
+                     `projection`, or the camera as `view` and `projection`";
+                return Err(Fault::new("along", message));
+            }
+        };
+        let clip = clip.map_err(|message| Fault::new(key, message))?;
+        if clip.is_orthographic() != scene.view_plane().is_parallel {
+            let message = "one of this projection and the camera is orthographic, the other is not";
+            return Err(Fault::new("projection", message));
+        }
+        Ok(Some(clip))
     }
 
     fn check_scale(&self) -> Result<(), Fault> {

@@ -144,7 +144,7 @@ impl SceneFile {
         self.display.fit_exposure(&mut scene);
         adjust(&mut scene, &self.integration.keys())?;
         if let (Some(depth), None) = (&self.depth, &scene.depth) {
-            scene.depth = Some(depth.open(folder)?);
+            scene.depth = Some(depth.open(folder, &scene)?);
         }
         self.display.read_background(folder, &mut scene)?;
         groups.check(&scene)?;

@@ -58,7 +58,7 @@ mod tests {
             reach: 20.0,
             measure: 1.0,
             reduction: crate::scene::Reduction::Sum,
-            pixel: 1e-3,
+            pixel: crate::wave::pack::Pixel::OfDistance(1e-3),
             tolerance: 1e-3,
         };
         let falloff = |profile, reach2| Falloff {

@@ -5,21 +5,23 @@ use crate::scene::kinds::{KIND_COUNT, for_each_kind};
 
 device_struct! {
     /// The pixel grid on the projection plane, and the length of the rays that begin there.
-    View [128] {
+    View [160] {
         first_pixel: [f32; 4] = 0,
         column_step: [f32; 4] = 16,
         row_step: [f32; 4] = 32,
         first_pixel_rest: [f32; 4] = 48,
         column_step_rest: [f32; 4] = 64,
         row_step_rest: [f32; 4] = 80,
-        ray_length: f32 = 96,
-        near_plane: f32 = 100,
-        near_plane_rest: f32 = 104,
-        hides_all: f32 = 108,
-        width: u32 = 112,
-        height: u32 = 116,
-        padding_0: u32 = 120,
-        padding_1: u32 = 124,
+        toward: [f32; 4] = 96,
+        toward_rest: [f32; 4] = 112,
+        ray_length: f32 = 128,
+        near_plane: f32 = 132,
+        near_plane_rest: f32 = 136,
+        hides_all: f32 = 140,
+        width: u32 = 144,
+        height: u32 = 148,
+        is_parallel: u32 = 152,
+        padding: u32 = 156,
     }
 }
 

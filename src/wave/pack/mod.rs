@@ -26,12 +26,41 @@ pub struct Anchor {
     pub reach: f64,
     /// `|E - S|` where light is measured by length, else 1; times a decay that is the same everywhere.
     pub measure: f64,
-    /// How large a pixel is, as a share of the distance from the origin; 0 where there are none.
-    pub pixel: f64,
+    /// How large a pixel is.
+    pub pixel: Pixel,
     /// Relative error aimed at.
     pub tolerance: f64,
     /// What a pixel has of integrals.
     pub reduction: Reduction,
+}
+
+/// How large a pixel is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pixel {
+    /// There are none.
+    None,
+    /// So large a share of the distance from the origin.
+    OfDistance(f64),
+    /// Of this size everywhere, world units: rays are parallel.
+    Even(f64),
+}
+
+impl Pixel {
+    fn of(scene: &Scene) -> Self {
+        match scene.camera.pixel_at_1(scene.image) {
+            (side, true) => Self::Even(side),
+            (side, false) => Self::OfDistance(side),
+        }
+    }
+
+    /// Returns the size at a distance from the origin, world units; `None` where there are none.
+    fn at(self, distance: f64) -> Option<f64> {
+        match self {
+            Self::None => None,
+            Self::OfDistance(share) => Some(share * distance),
+            Self::Even(size) => Some(size),
+        }
+    }
 }
 
 impl Anchor {
@@ -41,7 +70,7 @@ impl Anchor {
             origin,
             reach,
             measure: scene.integration.scale(ray_length) * even_decay(scene),
-            pixel: pixel(scene),
+            pixel: Pixel::of(scene),
             tolerance: scene.integration.method.tolerance(),
             reduction: scene.integration.reduction,
         }
@@ -78,11 +107,6 @@ pub fn even_decay(scene: &Scene) -> f64 {
     let even = scene.decay.filter(|decay| decay.power == 0);
     let decay = even.map_or(1.0, |decay| decay.alpha);
     scene.integration.reduction.of(decay)
-}
-
-/// Returns how large a pixel is, as a share of the distance from the eye.
-fn pixel(scene: &Scene) -> f64 {
-    2.0 * (0.5 * scene.camera.fov_y.to_radians()).tan() / f64::from(scene.image.height)
 }
 
 /// Four numbers of a list to which sources refer.

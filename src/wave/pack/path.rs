@@ -215,10 +215,10 @@ fn push_tangents(corners: &[LitCorner], rows: &mut Rows) {
 /// Returns how far chords may be off a piece.
 fn flatness(piece: &Piece, anchor: &Anchor) -> f64 {
     let (center, radius) = piece.ball();
-    let pixel = anchor.pixel * (center.distance(anchor.origin) - radius).max(0.0);
-    let off = match anchor.pixel {
-        0.0 => OF_SIZE * anchor.tolerance * radius,
-        _ => (OF_PIXEL * anchor.tolerance).min(MOST_PIXELS) * pixel,
+    let nearest = (center.distance(anchor.origin) - radius).max(0.0);
+    let off = match anchor.pixel.at(nearest) {
+        None => OF_SIZE * anchor.tolerance * radius,
+        Some(pixel) => (OF_PIXEL * anchor.tolerance).min(MOST_PIXELS) * pixel,
     };
     off.max(LEAST_OF_SIZE * radius)
 }
@@ -259,7 +259,7 @@ mod tests {
             origin: DVec3::new(0.3, -5.0, 0.2),
             reach: 20.0,
             measure: 1.0,
-            pixel: 1e-3,
+            pixel: crate::wave::pack::Pixel::OfDistance(1e-3),
             tolerance: 1e-2,
             reduction: crate::scene::Reduction::Sum,
         };

@@ -14,12 +14,17 @@ use crate::wave::Rule;
 /// The share by which a depth must fall short of the projection plane to hide all of a ray for certain, in float32.
 const MARGIN: f64 = 1e-5;
 
+/// So many times as long as a ray is the direction of parallel ones: along it, pixels grow by less than float32 sees.
+const OF_RAY: f64 = (1 << 25) as f64;
+
 /// Packs the view plane, and what depths are measured along.
 pub fn view(plane: &ViewPlane, scene: &Scene) -> View {
     let [first_pixel, column_step, row_step] =
         [plane.first_pixel, plane.column_step, plane.row_step].map(fine);
+    let toward = fine(plane.forward * (OF_RAY * plane.ray_length));
     let near_plane = match scene.depth.as_ref().map(DepthImage::along) {
-        Some(DepthAlong::Axis) => plane.near,
+        _ if plane.is_parallel => plane.near,
+        Some(DepthAlong::Axis | DepthAlong::Ndc | DepthAlong::Buffer) => plane.near,
         Some(DepthAlong::Ray) | None => 0.0,
     };
     View {
@@ -29,12 +34,15 @@ pub fn view(plane: &ViewPlane, scene: &Scene) -> View {
         first_pixel_rest: first_pixel.rest,
         column_step_rest: column_step.rest,
         row_step_rest: row_step.rest,
+        toward: toward.value,
+        toward_rest: toward.rest,
         ray_length: plane.ray_length as f32,
         near_plane: near_plane as f32,
         near_plane_rest: rest(near_plane),
-        hides_all: ((1.0 - MARGIN) * plane.near) as f32,
+        hides_all: (plane.near - MARGIN * plane.near.abs()) as f32,
         width: scene.image.width,
         height: scene.image.height,
+        is_parallel: u32::from(plane.is_parallel),
         ..Zeroable::zeroed()
     }
 }
