@@ -30,6 +30,16 @@ pub struct Camera {
     pub ray_length: Option<f64>,
 }
 
+// What is read of `[camera]`.
+keys! { pub(super) CAMERA_KEYS;
+    eye: VECTOR, WORLD, Required, "position of the eye";
+    target: VECTOR, WORLD, Required, "the point looked at, in the middle of the image";
+    up: VECTOR, NONE, Value("[0, 0, 1]"), "up in the image; need not be perpendicular to the view";
+    fov_y: from_to(0.001, 179.9), DEGREES, Value("45"), "full vertical angle of view";
+    near: POSITIVE, WORLD, Value("1"), "from the eye to the projection plane, where rays begin";
+    ray_length: POSITIVE, WORLD, Otherwise("past all sources"), "the length of every ray";
+}
+
 impl Camera {
     /// Makes a camera at `eye` that looks at `target`: +z up, 45 degrees, projection plane at 1.
     #[must_use]

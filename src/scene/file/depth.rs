@@ -28,6 +28,16 @@ pub(super) struct DepthTable {
     none: Option<f64>,
 }
 
+// What is read of `[depth]`.
+keys! { pub(in crate::scene) DEPTH_KEYS;
+    file: File, NONE, Required, "OpenEXR of the image's size; from the scene's folder";
+    along: Word(&["ray", "axis"]), NONE, Value("\"ray\""),
+        "distances from the eye, or their part along the view direction";
+    channel: Text, NONE, Otherwise("by its name"), "the channel's exact name, or \"part.channel\"";
+    scale: ANY, NONE, Value("1"), "world units to a unit of the file, but 0";
+    none: NumberOrNan, NONE, Otherwise("infinity alone"), "the file's value that means that nothing is there";
+}
+
 impl DepthTable {
     /// Names the file that an image was read from; `None` for one that was made in code.
     pub(super) fn of(image: &DepthImage) -> Option<Self> {

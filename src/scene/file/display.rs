@@ -12,6 +12,13 @@ pub(super) struct DisplayTable {
     tone_map: ToneMap,
 }
 
+// What is read of `[display]`.
+keys! { pub(in crate::scene) DISPLAY_KEYS;
+    exposure: from_to(-100.0, 100.0), "stops", Otherwise("fits the scene"), "radiance times 2^exposure";
+    tone_map: Word(&["clamp", "exponential", "reinhard", "aces"]), NONE, Value("\"exponential\""),
+        "the curve that brings radiance into a picture's range";
+}
+
 impl DisplayTable {
     pub(super) fn of(display: &Display) -> Self {
         Self {
