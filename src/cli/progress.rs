@@ -153,7 +153,10 @@ mod tests {
     use super::*;
 
     fn is_shown() -> bool {
-        SHOWN.lock().unwrap().is_some()
+        SHOWN
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .is_some()
     }
 
     #[test]

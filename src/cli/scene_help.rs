@@ -27,7 +27,7 @@ Vectors are three numbers in a right-handed world, lengths in world units.
         let others = table.groups.iter().filter(|group| !groups.contains(group));
         let others: Vec<&str> = others.map(|group| group.of).collect();
         text += &head(&table);
-        text += &groups.iter().map(|group| keys(group)).collect::<String>();
+        text += &groups.iter().map(keys).collect::<String>();
         if !others.is_empty() {
             text += &format!("  and the keys of {}\n", others.join(" and of "));
         }

@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, emissions_along, plus_z, source, source_struct};
 use crate::scene::chain::{LitChain, Piece, Run};
-use crate::scene::values::{Checked, Fault, direction, finite, positive, read_some_pair, read_some_vector, read_vector, vector};
+use crate::scene::values::{
+    Checked, Fault, direction, finite, positive, read_some_pair, read_some_vector, read_vector, vector,
+};
 
 source_struct! {
     /// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle

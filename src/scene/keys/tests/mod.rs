@@ -10,9 +10,8 @@ use std::path::Path;
 use serde_json::Value as Json;
 
 use super::{Absent, Count, Form, Key, Table, json_schema, table, tables};
-use crate::Scene;
-use crate::scene::Preset;
 use crate::scene::file::raw_fault;
+use crate::scene::{Preset, Scene};
 use validator::{refusal, refusal_of_table};
 
 const DEPTH: &str = "scenes/2010-figure-15-depth.exr";
@@ -296,7 +295,7 @@ fn the_schema_takes_every_scene_and_no_broken_one() {
         for (line, words) in [
             ("zzz = 1\n", ": unknown zzz"),
             ("sphere = { }\n", ".sphere: type \"array\""),
-            ("torus = [{ major_radius = 1, color = \"red\" }]\n", "anyOf"),
+            ("sphere = [{ radius = 1, color = \"red\" }]\n", "anyOf"),
             ("group = [{ zoom = 2 }]\n", "group[0]: unknown zoom"),
         ] {
             let broken: Json = match toml::from_str(&(line.to_owned() + text)) {
