@@ -51,6 +51,8 @@ pub mod image;
 #[doc(hidden)]
 pub mod internals;
 mod memory;
+#[cfg(feature = "files")]
+mod nearest;
 mod opencl;
 #[cfg(feature = "files")]
 mod output;
@@ -69,6 +71,8 @@ pub use cost::FrameCost;
 pub use error::{Cause, Error, ErrorKind, Result, SceneError};
 pub use glam; // whose vectors are in scenes
 pub use image::{DisplayImage, RadianceImage};
+#[cfg(feature = "files")]
+pub use nearest::nearest;
 #[cfg(feature = "kernel-cache")]
 pub use opencl::KernelCache;
 pub use opencl::{

@@ -78,10 +78,11 @@ const LAYERS: [(&str, &[&str]); 9] = [
         &["opencl", "scene", "reference", "wave", "render"],
     ),
 ];
-const BELOW_ALL: [&str; 10] = [
+const BELOW_ALL: [&str; 11] = [
     "error",
     "cost",
     "memory",
+    "nearest",
     "output",
     "shown",
     "threads",

@@ -8,33 +8,53 @@ use energywave::image::{DepthAlong, DepthImage, DepthOptions, Exposure, ImageSiz
 use energywave::scene::{Antialias, Method, MethodKeys, Sampling, Scene};
 use energywave::{Error, RendererOptions, SlowStart};
 
+use super::examples;
+use super::subcommands::*;
 use super::warn;
 
 /// Volumetric energy effects, integrated along every view ray on any OpenCL device.
 #[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(version, arg_required_else_help = true, disable_help_subcommand = true, after_help = examples::PROGRAM)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
+    /// Say nothing but warnings and errors: no device, no progress, nothing of what was done
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
 }
-
-const EXIT_CODES: &str = "Exit codes: 0 success, 2 usage, 3 scene or input file, 4 no such device, \
-5 device failed or out of memory, 6 verification failed, 7 output, 130 interrupted";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Draw a scene
+    #[command(after_help = examples::RENDER)]
     Render(RenderArguments),
     /// Write a scene to begin with: a preset, with comments that say what to change
+    #[command(after_help = examples::NEW)]
     New(NewArguments),
     /// List the devices, which one is the default and why, and what is missing
+    #[command(after_help = examples::DEVICES)]
     Devices(DevicesArguments),
     /// Measure the paper's speed tables, or a scene
+    #[command(after_help = examples::BENCH)]
     Bench(BenchArguments),
     /// Compare the methods on a scene: error against float64, and frames a second
+    #[command(after_help = examples::COMPARE)]
     Compare(CompareArguments),
     /// Check a device against rays whose integrals are known
+    #[command(after_help = examples::VERIFY)]
     Verify(VerifyArguments),
+    /// Print the JSON Schema of scene files, by which editors complete them
+    #[command(after_help = examples::SCHEMA)]
+    Schema,
+    /// Print what makes a shell complete what is typed
+    #[command(after_help = examples::COMPLETIONS)]
+    Completions(CompletionsArguments),
+    /// Print the manual page of the program or of a subcommand, for man
+    #[command(after_help = examples::MAN)]
+    Man(ManArguments),
+    /// Say what can be typed, or what a scene file may have: help scene
+    #[command(after_help = examples::HELP)]
+    Help(HelpArguments),
 }
 
 #[derive(Debug, Args)]
@@ -55,89 +75,6 @@ pub struct RenderArguments {
     pub exposure: Option<Exposure>,
     #[command(flatten)]
     pub overrides: Overrides,
-    #[command(flatten)]
-    pub device: DeviceArgument,
-    /// No progress bar, and of the depths only what is likely wrong
-    #[arg(short, long)]
-    pub quiet: bool,
-}
-
-#[derive(Debug, Args)]
-pub struct NewArguments {
-    /// Name of the preset, one of those that --list shows
-    #[arg(required_unless_present = "list")]
-    pub name: Option<String>,
-    /// Scene file to write; - is standard output [default: NAME.toml]
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Write in the place of a file that is there
-    #[arg(long)]
-    pub force: bool,
-    /// List the presets, a line for each
-    #[arg(long, conflicts_with_all = ["name", "output", "force"])]
-    pub list: bool,
-}
-
-#[derive(Debug, Args)]
-pub struct DevicesArguments {
-    /// Print a JSON array
-    #[arg(long)]
-    pub json: bool,
-}
-
-#[derive(Debug, Args)]
-pub struct VerifyArguments {
-    /// JSON file of rays instead of the built-in ones
-    #[arg(long)]
-    pub rays: Option<PathBuf>,
-    /// Relative error aimed at by the exact method, and allowed to it
-    #[arg(long, default_value_t = 1e-3, value_parser = tolerance, allow_hyphen_values = true)]
-    pub tolerance: f64,
-    /// Print a JSON array
-    #[arg(long)]
-    pub json: bool,
-    #[command(flatten)]
-    pub device: DeviceArgument,
-}
-
-#[derive(Debug, Args)]
-pub struct BenchArguments {
-    /// Scene file to measure instead of the paper's tables
-    pub scene: Option<PathBuf>,
-    /// A paper's table: 2 (torus) or 3 (Bezier) of 2015, both without; 2010 (beam, with and without hidden surfaces)
-    #[arg(long, value_enum, conflicts_with = "scene")]
-    pub table: Option<TableName>,
-    /// Print JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Folder for the last frame of each measurement, as EXR
-    #[arg(long, value_name = "DIR")]
-    pub frames_out: Option<PathBuf>,
-    /// Time of each measurement
-    #[arg(long, default_value_t = 1.0, value_parser = seconds)]
-    pub seconds: f64,
-    #[command(flatten)]
-    pub overrides: Overrides,
-    #[command(flatten)]
-    pub device: DeviceArgument,
-}
-
-#[derive(Debug, Args)]
-pub struct CompareArguments {
-    /// Scene file, TOML or JSON
-    pub scene: PathBuf,
-    /// Size of the images in pixels, such as 128x128 [default: the scene's]
-    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
-    pub size: Option<ImageSize>,
-    /// Print JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Time of each measurement of speed
-    #[arg(long, default_value_t = 0.5, value_parser = seconds)]
-    pub seconds: f64,
-    /// No progress bar
-    #[arg(long, short)]
-    pub quiet: bool,
     #[command(flatten)]
     pub device: DeviceArgument,
 }
@@ -218,19 +155,6 @@ pub struct Overrides {
         requires = "depth"
     )]
     pub depth_none: Option<f64>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum TableName {
-    /// A torus by Simpson's rule (2015)
-    #[value(name = "2")]
-    Torus,
-    /// A Bezier curve by Simpson's rule (2015)
-    #[value(name = "3")]
-    Bezier,
-    /// A beam in closed form, with and without hidden surfaces
-    #[value(name = "2010")]
-    Beam,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -401,7 +325,7 @@ impl Overrides {
     }
 }
 
-fn size(text: &str) -> Result<ImageSize, String> {
+pub(super) fn size(text: &str) -> Result<ImageSize, String> {
     let pixels = |text: &str| text.trim().parse().ok().filter(|pixels: &u32| *pixels > 0);
     let sides = text
         .split_once(['x', 'X'])
@@ -434,14 +358,14 @@ fn scale(text: &str) -> Result<f64, String> {
     }
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if (0.0..=3600.0).contains(&seconds) => Ok(seconds),
         _ => Err("a time is a number of seconds up to 3600".to_owned()),
     }
 }
 
-fn tolerance(text: &str) -> Result<f64, String> {
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(tolerance) if (1e-12..1.0).contains(&tolerance) => Ok(tolerance),
         _ => Err("a tolerance lies between 1e-12 and 1, such as 1e-3".to_owned()),

@@ -12,8 +12,8 @@ use energywave::scene::{Method, Sampling};
 use energywave::{Device, DeviceType, Error, Renderer, Scene, shown};
 use serde::Serialize;
 
-use super::args::{BenchArguments, TableName};
-use super::{Outcome, choose_devices, note, print, print_json, read_scene, tell_depths};
+use super::subcommands::{BenchArguments, TableName};
+use super::{Outcome, choose_devices, names, note, print, print_json, read_scene, tell_depths};
 
 /// A cell of a table.
 #[derive(Serialize)]
@@ -220,7 +220,7 @@ fn print_cell(cell: &Cell, is_first: bool) -> Outcome {
 
 fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     let scene = read_scene(path, |scene, keys| arguments.overrides.apply(scene, keys))?;
-    tell_depths(&scene, false);
+    tell_depths(&scene);
     let (devices, mut renderer) = prepare(arguments)?;
     let speed = measure(&mut renderer, &scene, time(arguments))?;
     let stem = match path.file_stem() {
@@ -273,12 +273,6 @@ fn prepare(arguments: &BenchArguments) -> Result<(Vec<Device>, Renderer), super:
     let renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     note(&format!("a cell takes {} s", arguments.seconds));
     Ok((devices, renderer))
-}
-
-/// Returns the names of all devices.
-fn names(devices: &[Device]) -> String {
-    let names: Vec<&str> = devices.iter().map(|device| device.name.as_str()).collect();
-    names.join(" + ")
 }
 
 fn time(arguments: &BenchArguments) -> Duration {

@@ -7,8 +7,8 @@ use energywave::scene::{Antialias, Method};
 use energywave::{Device, Renderer};
 use serde::Serialize;
 
-use super::args::CompareArguments;
 use super::progress::{Progress, catch_interrupts};
+use super::subcommands::CompareArguments;
 use super::{Outcome, choose_devices, note, print, print_json, read_scene, tell_depths};
 
 #[derive(Serialize)]
@@ -49,14 +49,14 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
         scene.integration.antialias = Antialias::None; // methods are compared along rays
         Ok(())
     })?;
-    tell_depths(&scene, arguments.quiet);
+    tell_depths(&scene);
     let devices = choose_devices(arguments.device.device.as_deref())?;
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     catch_interrupts();
     note("the truth is computed in float64 first; --size makes it quicker");
     let mut exact = scene.clone();
     exact.integration.method = Method::default();
-    let mut progress = Progress::new(arguments.quiet);
+    let mut progress = Progress::new();
     let mut reference = Renderer::new(&Device::reference())?;
     let truth = reference.render_with_progress(&exact, &mut |share| progress.report(share))?;
     drop(progress);

@@ -2,7 +2,7 @@
 
 use energywave::{Device, DeviceType, Devices};
 
-use super::args::DevicesArguments;
+use super::subcommands::DevicesArguments;
 use super::{Outcome, note, print, print_json};
 
 pub fn run(arguments: &DevicesArguments) -> Outcome {

@@ -5,16 +5,23 @@ mod bench;
 mod compare;
 mod devices;
 mod environment;
+mod examples;
+mod help;
 mod new;
 mod progress;
 mod render;
+mod scene_help;
+mod subcommands;
 mod verify;
 
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use anstyle::AnsiColor;
 use clap::Parser;
+use energywave::scene::keys::json_schema;
 use energywave::scene::{MethodKeys, Scene};
 use energywave::{Device, DeviceType, Devices, Error, ErrorKind, shown, shown_lines};
 
@@ -45,6 +52,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return misused(&error),
     };
+    IS_QUIET.store(arguments.quiet, Ordering::Relaxed);
     environment::check();
     warnings.iter().for_each(|warning| warn(warning));
     let outcome = match arguments.command {
@@ -54,6 +62,10 @@ pub fn run(warnings: &[String]) -> ExitCode {
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
+        Command::Schema => print(&format!("{}\n", json_schema())),
+        Command::Completions(arguments) => help::completions(&arguments),
+        Command::Man(arguments) => help::manual(&arguments),
+        Command::Help(arguments) => help::run(&arguments),
     };
     let Err(failure) = outcome else {
         return ExitCode::SUCCESS;
@@ -67,7 +79,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
         }
         Failure::Stdout(error) => (format!("standard output: cannot write: {error}"), 7),
     };
-    note(&format!("error: {message}"));
+    tell("error", AnsiColor::Red, &message);
     ExitCode::from(code)
 }
 
@@ -92,11 +104,11 @@ fn misused(error: &clap::Error) -> ExitCode {
         let length = line.chars().count();
         let end: String = line.chars().skip(length.max(HALF) - HALF).collect();
         match length > MOST_COLUMNS {
-            true => note(&format!(
-                "{}…{end}",
-                line.chars().take(HALF).collect::<String>()
-            )),
-            false => note(line),
+            true => {
+                let begin: String = line.chars().take(HALF).collect();
+                write_line("", &format!("{begin}…{end}"));
+            }
+            false => write_line("", line),
         }
     }
     ExitCode::from(2)
@@ -153,6 +165,12 @@ fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
     Ok(chosen)
 }
 
+/// Returns the names of all devices.
+fn names(devices: &[Device]) -> String {
+    let names: Vec<&str> = devices.iter().map(|device| device.name.as_str()).collect();
+    names.join(" + ")
+}
+
 /// Reads a scene from a file, or from standard input if it is called `-`, and says what was hardly meant in it.
 fn read_scene(
     path: &Path,
@@ -168,31 +186,51 @@ fn read_scene(
     Ok(scene)
 }
 
-/// Says on standard error what the scene's depths come to; if `quiet`, only what is likely wrong with them.
-fn tell_depths(scene: &Scene, quiet: bool) {
+/// Says on standard error what the scene's depths come to, and what is likely wrong with them.
+fn tell_depths(scene: &Scene) {
     let Some(report) = scene.depth_report() else {
         return;
     };
     let file = scene.depth.as_ref().and_then(|depth| depth.file());
     let name = file.and_then(|file| file.file_name()).unwrap_or_default();
     let name = shown(&name.to_string_lossy());
-    if !quiet {
-        note(&format!("depth: {name}: {report}"));
-    }
+    note(&format!("depth: {name}: {report}"));
     for warning in &report.warnings {
         warn(&format!("{name}: {warning}"));
     }
 }
 
-/// Writes a warning to standard error, also where quiet is asked for: the work goes on, but not as was meant.
-fn warn(message: &str) {
-    note(&format!("warning: {message}"));
+/// Whether only warnings and errors are wanted.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+fn is_quiet() -> bool {
+    IS_QUIET.load(Ordering::Relaxed)
 }
 
-/// Writes a message to standard error, mostly one line. Here at the latest nothing is left in it that a terminal obeys.
+/// Writes a warning to standard error, also where quiet is asked for: the work goes on, but not as was meant.
+fn warn(message: &str) {
+    tell("warning", AnsiColor::Yellow, message);
+}
+
+/// Writes what is good to know to standard error, unless quiet is asked for.
 fn note(message: &str) {
-    // Nobody is left to tell if standard error is closed.
-    let _ = writeln!(io::stderr(), "{}", shown_lines(message));
+    if !is_quiet() {
+        write_line("", message);
+    }
+}
+
+/// Writes a message to standard error, with a word before it that has a colour where a terminal shows colours.
+fn tell(word: &str, color: AnsiColor, message: &str) {
+    let style = color.on_default().bold();
+    write_line(&format!("{style}{word}:{style:#} "), message);
+}
+
+/// Writes a message, mostly one line. Here at the latest nothing is left in it that a terminal obeys.
+fn write_line(head: &str, message: &str) {
+    progress::beside(|| {
+        // Nobody is left to tell if standard error is closed.
+        let _ = writeln!(anstream::stderr(), "{head}{}", shown_lines(message));
+    });
 }
 
 /// Writes data to standard output.

@@ -2,14 +2,15 @@
 
 use std::io::{IsTerminal, stdout};
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use energywave::image::{Display, Exposure, ImageFile, ImageFormat};
 use energywave::scene::Method;
-use energywave::{Device, Error, Renderer, Scene, shown};
+use energywave::{Device, Error, RadianceImage, Renderer, Scene, shown};
 
 use super::args::{FormatName, RenderArguments};
 use super::progress::{Progress, catch_interrupts, was_interrupted};
-use super::{Outcome, choose_devices, note, read_scene, tell_depths};
+use super::{Outcome, choose_devices, names, note, read_scene, tell_depths};
 
 pub fn run(arguments: RenderArguments) -> Outcome {
     let format = format(&arguments)?;
@@ -24,25 +25,26 @@ pub fn run(arguments: RenderArguments) -> Outcome {
     })?;
     // Waits for the reader of a pipe: before Ctrl-C is caught.
     let output = create(&arguments.output, format)?;
-    tell_depths(&scene, arguments.quiet);
+    tell_depths(&scene);
     catch_interrupts();
     let devices = choose_devices(arguments.device.device.as_deref())?;
+    let begun = Instant::now();
+    let mut progress = Progress::new();
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
-    let mut progress = Progress::new(arguments.quiet);
     let image = renderer.render_with_progress(&scene, &mut |share| progress.report(share))?;
     drop(progress);
     if was_interrupted() {
         return Err(Error::Interrupted.into());
     }
+    let took = begun.elapsed();
     if scene.display.exposure == Exposure::Auto {
         let stops = image.auto_exposure();
         scene.display.exposure = stops.into();
-        if !arguments.quiet {
-            note(&format!("exposure: {stops:.2} stops, by auto"));
-        }
+        note(&format!("exposure: {stops:.2} stops, by auto"));
     }
     let output = noted(output, &arguments.scene, &scene, &devices);
     output.write(&image, &scene.display)?;
+    note(&drawn(&image, &scene, took, &names(&devices)));
     Ok(())
 }
 
@@ -77,6 +79,36 @@ fn noted(output: ImageFile, name: &Path, scene: &Scene, devices: &[Device]) -> I
         .note("device", devices.join(", "))
 }
 
+/// Says what was drawn.
+fn drawn(image: &RadianceImage, scene: &Scene, took: Duration, device: &str) -> String {
+    let light = image
+        .as_slice()
+        .chunks_exact(4)
+        .flat_map(|pixel| &pixel[..3]);
+    let (least, greatest) = light.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), light| {
+        (low.min(*light), high.max(*light))
+    });
+    let (least, greatest) = (digits(least.into()), digits(greatest.into()));
+    format!(
+        "drawn: {}x{} pixels in {:.2} s on {device}; radiance {least} to {greatest}, exposure {} stops",
+        image.size().width,
+        image.size().height,
+        took.as_secs_f64(),
+        digits(scene.display.exposure.stops(image))
+    )
+}
+
+/// Writes a number with four digits.
+fn digits(value: f64) -> String {
+    let short = format!("{value:.3e}");
+    match short.parse::<f64>() {
+        Ok(rounded) if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) => {
+            rounded.to_string()
+        }
+        _ => short,
+    }
+}
+
 /// Whether the output is standard output.
 fn is_stdout(path: &Path) -> bool {
     path == Path::new("-")
@@ -101,5 +133,25 @@ fn create(path: &Path, format: ImageFormat) -> Result<ImageFile, Error> {
             "it is a terminal; name a file, or send it to a program",
         )),
         true => Ok(ImageFile::stdout(format)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::digits;
+
+    #[test]
+    fn numbers_have_four_digits() {
+        let found = [0.0, 1.0, 12.345_67, -0.001_234_56, 1.5e-7, 123_456.0, 1e12].map(digits);
+        let expected = [
+            "0",
+            "1",
+            "12.35",
+            "-0.001235",
+            "1.500e-7",
+            "123500",
+            "1.000e12",
+        ];
+        assert_eq!(found, expected);
     }
 }

@@ -6,7 +6,8 @@ use energywave::scene::Method;
 use energywave::verify::{DIVISIONS, KnownRay, Row, built_in_rays, rays_from_file, verify};
 use energywave::{Device, Renderer, RendererOptions, shown};
 
-use super::args::{SLOW_START, VerifyArguments};
+use super::args::SLOW_START;
+use super::subcommands::VerifyArguments;
 use super::{Failure, Outcome, choose_devices, note, print, print_json};
 
 pub fn run(arguments: &VerifyArguments) -> Outcome {

@@ -8,12 +8,12 @@ mod depth;
 mod depth_channel;
 #[cfg(feature = "files")]
 mod depth_file;
+#[cfg(feature = "files")]
+mod depth_source;
 mod display;
 #[cfg(feature = "files")]
 mod encode;
 mod exposure;
-#[cfg(feature = "files")]
-mod depth_source;
 #[cfg(feature = "files")]
 mod file;
 #[cfg(feature = "files")]

@@ -22,6 +22,13 @@ pub struct Decay {
     pub power: u32,
 }
 
+// What is read of `[decay]`.
+keys! { pub(super) DECAY_KEYS;
+    alpha: POSITIVE, NONE, Required, "strength of alpha / (s + beta)^power, s from 0 to 1 along a ray";
+    beta: POSITIVE, NONE, Required, "its offset";
+    power: Whole(0, 3), NONE, Value("2"), "2 is that of 2015; with 0 light is alpha everywhere";
+}
+
 fn square() -> u32 {
     2
 }
@@ -72,6 +79,12 @@ impl Decay {
 pub struct Absorption {
     /// Per world unit; 0: none.
     pub kappa: f64,
+}
+
+// What is read of `[absorption]`.
+keys! { pub(super) ABSORPTION_KEYS;
+    kappa: NOT_NEGATIVE, "per world unit", Required,
+        "light falls by exp(-kappa x), x the length from the ray's beginning";
 }
 
 impl Absorption {

@@ -4,6 +4,18 @@
 //! All vectors are world space, right-handed; lengths in world units; angles in degrees; colours linear RGB. Structs
 //! may get further fields: write `..Torus::new(0.9)` and the like.
 
+/// Makes a table of keys: `name: form, unit, what holds without it, a line of help;`.
+macro_rules! keys {
+    ($visibility:vis $TABLE:ident; $($name:ident: $form:expr, $unit:expr, $absent:expr, $help:expr;)*) => {
+        #[cfg(feature = "files")]
+        $visibility const $TABLE: &[$crate::scene::keys::Key] = {
+            #[allow(unused_imports, reason = "not every table needs every word")]
+            use $crate::scene::keys::words::*;
+            &[$(key(stringify!($name), $form, $unit, $absent, $help)),*]
+        };
+    };
+}
+
 mod camera;
 pub(crate) mod chain;
 mod colors;
@@ -16,6 +28,8 @@ mod file;
 mod group;
 mod in_view;
 mod integration;
+#[cfg(feature = "files")]
+pub mod keys;
 pub(crate) mod kinds;
 mod list;
 #[cfg(feature = "files")]

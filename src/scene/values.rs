@@ -9,7 +9,7 @@ use crate::error::SceneError;
 
 /// Largest magnitude of any number, smallest of a positive one: squares and cubes of what lies between stay finite and
 /// normal in the devices' float32.
-const LARGEST: f64 = 1e9;
+pub(super) const LARGEST: f64 = 1e9;
 pub(super) const SMALLEST: f64 = 1e-9;
 
 pub(crate) type Checked = Result<(), Fault>;
@@ -96,12 +96,30 @@ pub(crate) fn direction(key: &'static str, value: DVec3) -> Checked {
 
 /// Reads exactly three numbers; some formats would let a fourth pass unread.
 pub(crate) fn read_vector<'de, D: Deserializer<'de>>(reader: D) -> Result<DVec3, D::Error> {
+    read_numbers(reader, "three").map(|numbers: [f64; 3]| numbers.into())
+}
+
+/// Reads exactly two numbers.
+pub(crate) fn read_pair<'de, D: Deserializer<'de>>(reader: D) -> Result<[f64; 2], D::Error> {
+    read_numbers(reader, "two")
+}
+
+/// Reads two numbers for a key that may be absent.
+pub(crate) fn read_some_pair<'de, D: Deserializer<'de>>(
+    reader: D,
+) -> Result<Option<[f64; 2]>, D::Error> {
+    read_pair(reader).map(Some)
+}
+
+fn read_numbers<'de, D: Deserializer<'de>, const COUNT: usize>(
+    reader: D,
+    count: &str,
+) -> Result<[f64; COUNT], D::Error> {
     let numbers = Vec::<f64>::deserialize(reader)?;
     let found = numbers.len();
-    let numbers: [f64; 3] = numbers
+    numbers
         .try_into()
-        .map_err(|_| serde::de::Error::custom(format!("expected three numbers, found {found}")))?;
-    Ok(numbers.into())
+        .map_err(|_| serde::de::Error::custom(format!("expected {count} numbers, found {found}")))
 }
 
 /// Reads a list of vectors.

@@ -107,14 +107,14 @@ fn an_environment_variable_that_counts_for_nothing_is_told() {
     ] {
         let output = draw(name, value);
         expect(&output, 0, words);
-        assert_eq!(stderr(&output).lines().count(), 2, "{}", stderr(&output));
+        assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
     }
     for (name, value) in [
         ("ENERGYWAVE_CACHE", "never"),
         ("ENERGYWAVE_CACHE", ""),
         ("ENERGYWAVE_CACHE_DIR", "none/yet"),
     ] {
-        assert_eq!(stderr(&draw(name, value)).lines().count(), 1);
+        assert_eq!(stderr(&draw(name, value)), "");
     }
 }
 

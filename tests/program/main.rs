@@ -20,6 +20,8 @@ mod displays; // lays files over plates as other programs do
 mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
 mod groups; // has groups placed as the sources that they stand for
+#[cfg(unix)] // as cli
+mod help; // reads what the program says of itself, and types its examples
 mod messages; // is told what to write instead, and nothing raw or long
 mod methods; // chooses ways to integrate, in files and by options
 #[cfg(unix)] // as cli
@@ -27,5 +29,6 @@ mod outputs; // writes to links, pipes and devices, and reads scenes from pipes
 #[cfg(unix)] // as cli
 mod presets; // writes every preset, and nothing over what is there
 mod scene_files; // reads again what was written
+mod speaks; // says what it drew, and is quiet
 mod verify; // checks known rays, past sources and past whole scenes
 mod warnings; // is told what a scene was hardly meant to say

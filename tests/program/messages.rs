@@ -17,6 +17,12 @@ near = 01 | 4:8: camera.near | write 1.0
 near = 0.5f | 4:11: camera.near | write 0.5
 near = 45° | 4:8: camera.near | write 45.0
 near = | 4:7: camera.near | there is no value
+fov = 45 | 4:1: camera.fov | did you mean `fov_y`?
+fovY = 45 | 4:1: camera.fovY | did you mean `fov_y`?
+major_radius = 1 | 4:1: camera.major_radius | [[torus]] has a key of this name
+[integration]/method = "simson" | 5:10: integration.method | did you mean `simpson`?
+[[torus]]/major_radius = 1/color_ = 1 | 6:1: torus[0].color_ | did you mean `color`?
+[[torsu]]/major_radius = 1 | 4:3: torsu | did you mean `torus`?
 near = NaN | 4:8: camera.near | a finite one
 near = "0.5" | 4:8: camera.near | expected a number; write 0.5
 near = "inf" | 4:8: camera.near | expected a number
@@ -37,6 +43,7 @@ up = { x = 0 } | 4:6: camera.up | a table, expected a list, such as [0.0, 0.0, 1
 /// What follows a valid camera in JSON, and words of the message.
 const JSON: &str = r#"
 }, "torus": {"major_radius": 1}} | torus: there may be several: write a list of them, also of one: "torus": [{ }]
+}, "toruses": 5} | did you mean `torus`?
 }, "torus": 5} | torus: there may be several
 , "near": .5}} | camera.near: `.5` is no number of JSON; write 0.5
 , "near": 5.}} | camera.near: `5.` is no number of JSON; write 5.0

@@ -22,7 +22,7 @@ fn no_scene_of_the_repository_is_warned_of() {
     assert!(count >= 20, "{count}");
 }
 
-/// Draws a scene; the lines on standard error but for that of the device.
+/// Draws a scenequietly; the lines on standard error.
 fn said(name: &str, text: &str) -> Vec<String> {
     let folder = Folder::new();
     std::fs::write(folder.path().join(name), text).unwrap();
@@ -38,10 +38,8 @@ fn said(name: &str, text: &str) -> Vec<String> {
         "2x2",
     ];
     let output = folder.run(&arguments);
-    expect(&output, 0, "device: ");
-    let said = stderr(&output);
-    let lines = said.lines().filter(|line| !line.starts_with("device: "));
-    lines.map(str::to_owned).collect()
+    expect(&output, 0, "");
+    stderr(&output).lines().map(str::to_owned).collect()
 }
 
 #[test]

@@ -10,6 +10,8 @@ pub use matrices::{CameraMatrices, ClipY};
 
 use super::values::{Checked, Fault, SMALLEST, direction, finite, positive, vector};
 use crate::image::{ClipRange, ImageSize};
+#[cfg(feature = "files")]
+pub(super) use table::CAMERA_KEYS;
 use table::CameraTable;
 #[cfg(feature = "files")]
 pub(super) use table::{read_matrix, write_matrix};

@@ -63,6 +63,22 @@ pub(super) struct CameraTable {
     jitter: DVec2,
 }
 
+// What is read of `[camera]`.
+keys! { pub(in crate::scene) CAMERA_KEYS;
+    eye: VECTOR, WORLD, RequiredWithout("view"), "position of the eye";
+    target: VECTOR, WORLD, RequiredWithout("view"), "the point looked at, in the middle of the image";
+    up: VECTOR, NONE, Value("[0, 0, 1]"), "up in the image; need not be perpendicular to the view";
+    fov_y: from_to(0.001, 179.9), DEGREES, Value("45"), "full vertical angle of view";
+    near: POSITIVE, WORLD, Otherwise("1, or the projection's"),
+        "from the eye to the projection plane, where rays begin";
+    ray_length: POSITIVE, WORLD, Otherwise("past all sources"), "the length of every ray";
+    jitter: PAIR, PIXELS, Value("[0, 0]"), "moves rays right and down within their pixels";
+    view: Matrix, NONE, Otherwise("eye and target"), "an engine's matrix from the world to the eye";
+    projection: Matrix, NONE, Otherwise("fov_y"), "an engine's matrix from the eye to clip space";
+    range: Word(&["0..1", "-1..1"]), NONE, Otherwise("by the projection"), "the depths of clip space";
+    y: Word(&["up", "down"]), NONE, Otherwise("by the projection"), "where y of clip space goes in the image";
+}
+
 impl TryFrom<CameraTable> for Camera {
     type Error = String;
 

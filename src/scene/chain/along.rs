@@ -228,7 +228,8 @@ impl Along<'_> {
 
     /// Returns the runs of a core, then of each of its branches.
     fn arms(&self, whole: Run) -> Vec<Vec<Run>> {
-        let arms = match self.arc {
+        // The length of rays asks for cores before sources are checked: of a wrong arc, kinks might be without number.
+        let arms = match self.arc.filter(|arc| arc.check(&whole).is_ok()) {
             Some(arc) => arc.displaced(whole),
             None => vec![whole],
         };

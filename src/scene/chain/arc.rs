@@ -31,6 +31,16 @@ pub struct ElectricArc {
     pub time: f64,
 }
 
+// What is read of `arc`.
+keys! { pub(in crate::scene) ARC_KEYS;
+    amplitude: NOT_NEGATIVE, WORLD, Required, "how far the core is displaced at most";
+    scale: POSITIVE, WORLD, Required, "the length of the largest kinks";
+    seed: WHOLE, NONE, Value("0"), "every seed has another shape";
+    drift: ANY, "per second", Value("0"), "how often the shape becomes another one, without a jump";
+    branches: Whole(0, MOST_BRANCHES), NONE, Value("0"), "how many side arms leave the core";
+    time: ANY, "seconds", Value("0"), "when it is; counts only times drift";
+}
+
 /// Octaves of a core's kinks; of those of a branch, which begin at half the scale, one less: pieces are as long.
 const OCTAVES: u32 = 4;
 const OCTAVES_OF_BRANCH: u32 = OCTAVES - 1;

@@ -24,6 +24,13 @@ pub struct Dashes {
     pub offset: f64,
 }
 
+// What is read of `dashes`.
+keys! { pub(in crate::scene) DASHES_KEYS;
+    count: Whole(1, MOST_DASHES), NONE, Required, "how many there are";
+    fill: between(0.0, 1.0), NONE, Value("0.5"), "how much of a dash with its gap is lit";
+    offset: ANY, "dashes", Value("0"), "moves all on along the core, by 1 to where the next one was";
+}
+
 fn half() -> f64 {
     0.5
 }

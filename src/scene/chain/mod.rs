@@ -11,7 +11,11 @@ mod piece;
 use glam::DVec3;
 
 pub(crate) use along::{Along, LightAlong, series_at};
+#[cfg(feature = "files")]
+pub(super) use arc::ARC_KEYS;
 pub use arc::ElectricArc;
+#[cfg(feature = "files")]
+pub(super) use dashes::DASHES_KEYS;
 pub use dashes::Dashes;
 pub(crate) use piece::Piece;
 

@@ -40,6 +40,18 @@ pub(super) struct DepthTable {
     range: Option<ClipRange>,
 }
 
+// What is read of `[depth]`.
+keys! { pub(in crate::scene) DEPTH_KEYS;
+    file: File, NONE, Required, "EXR, 16-bit PNG, or raw float32 (.raw, .f32) of the image's size";
+    along: Word(&["ray", "axis", "ndc", "buffer"]), NONE, Value("\"ray\""),
+        "from the eye, along the view, or depths of clip space, -1 or 0 to 1";
+    channel: Text, NONE, Otherwise("by its name"), "the channel's exact name, or \"part.channel\"";
+    scale: ANY, NONE, Value("1"), "world units to a unit of the file, but 0";
+    none: NumberOrNan, NONE, Otherwise("infinity alone"), "the file's value that means that nothing is there";
+    projection: Matrix, NONE, Otherwise("the camera's"), "the matrix that made depths of clip space";
+    range: Word(&["0..1", "-1..1"]), NONE, Otherwise("by the projection"), "the depths of clip space";
+}
+
 impl DepthTable {
     /// Names the file that an image was read from; `None` for one that was made in code.
     pub(super) fn of(image: &DepthImage) -> Option<Self> {

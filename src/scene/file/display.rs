@@ -33,6 +33,19 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
+// What is read of `[display]`.
+keys! { pub(in crate::scene) DISPLAY_KEYS;
+    exposure: NumberOr(-100.0, 100.0, "auto"), "stops", Otherwise("fits the scene"),
+        "radiance times 2^exposure; \"auto\" fits the picture";
+    tone_map: Word(&["agx", "khronos-neutral", "clamp", "exponential", "reinhard", "aces"]), NONE, Value("\"agx\""),
+        "the curve that brings radiance into a picture's range";
+    alpha: Word(&["opaque", "additive", "luminance"]), NONE, Value("\"opaque\""),
+        "what a picture that is laid over another hides";
+    background: ColorOrFile, NONE, Otherwise("black"), "what the light is laid over; a .png or .exr";
+    bits: Whole(8, 32), NONE, Otherwise("8; EXR 32"), "of a channel: PNG 8 or 16, EXR 16 or 32";
+    quality: Whole(1, 100), NONE, Otherwise("90"), "of a JPEG";
+}
+
 impl DisplayTable {
     /// Makes the table as it is written; `None` where a background was made in code.
     pub(super) fn of(display: &Display) -> Option<Self> {

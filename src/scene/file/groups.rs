@@ -48,6 +48,14 @@ macro_rules! define_group_table {
 }
 for_each_kind!(define_group_table);
 
+// What is read of `[[group]]`, but for what it places.
+keys! { pub(in crate::scene) GROUP_KEYS;
+    scale: POSITIVE, NONE, Value("1"), "what all lengths are multiplied with";
+    rotate: Table("rotate"), NONE, Otherwise("not turned"), "a turn about the group's origin, after the scale";
+    translate: VECTOR, WORLD, Value("[0, 0, 0]"), "where the group's origin is put";
+    repeat: Table("repeat"), NONE, Otherwise("once"), "copies, all of which are scaled, rotated and translated";
+}
+
 fn one() -> f64 {
     1.0
 }

@@ -26,6 +26,24 @@ pub(super) struct IntegrationTable {
     softening: f64,
 }
 
+// What is read of `[integration]`.
+keys! { pub(in crate::scene) INTEGRATION_KEYS;
+    method: Word(&["simpson", "jittered", "exact"]), NONE, Value("\"exact\""),
+        "the integral to a tolerance, or sums of equal divisions";
+    tolerance: from_to_below(1e-12, 1.0), NONE, Value("1e-3"), "exact: the relative error aimed at";
+    sampling: Word(&["pixels", "tiles"]), NONE, Value("\"tiles\""),
+        "exact: take every integral, or those that are needed";
+    divisions: Whole(1, 65536), NONE, Value("200"), "simpson: an even number, at least 2; jittered: any";
+    seed: WHOLE, NONE, Value("0"), "jittered: which random numbers";
+    measure: Word(&["parameter", "length"]), NONE, Value("\"length\""),
+        "sum over world units, or over s from 0 to 1 along the ray as in 2015";
+    reduction: Word(&["sum", "rms"]), NONE, Value("\"sum\""),
+        "the sum of all lights, or the root of one light's summed square";
+    antialias: Word(&["footprint", "none"]), NONE, Value("\"footprint\""),
+        "exact: a pixel is the mean over its square, or what one ray gets";
+    softening: NOT_NEGATIVE, WORLD, Value("0"), "its square is added to every squared distance to a core";
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum MethodName {

@@ -23,9 +23,13 @@ use super::kinds::for_each_kind;
 use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
+pub(super) use depth::DEPTH_KEYS;
 use depth::DepthTable;
+pub(super) use display::DISPLAY_KEYS;
 use display::DisplayTable;
+pub(super) use groups::GROUP_KEYS;
 use groups::{GroupTable, Groups};
+pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
 pub use integration::MethodKeys;
 use scan::UNIT_COUNT;
@@ -126,6 +130,13 @@ macro_rules! define_scene_file {
     };
 }
 for_each_kind!(define_scene_file);
+
+/// Says in the words of the reader what is wrong with a text: with its syntax, its keys and the types of its values.
+#[cfg(all(test, feature = "json"))]
+pub(super) fn raw_fault(text: &str) -> Option<String> {
+    let fault = ::toml::from_str::<SceneFile>(text).err()?;
+    Some(fault.message().to_owned())
+}
 
 fn is_empty<T>(list: &List<T>) -> bool {
     list.len() == 0

@@ -2,6 +2,8 @@
 
 use super::numbers::{is_whole, meant};
 use super::scan::UNITS;
+use crate::nearest;
+use crate::scene::keys::{Table, tables};
 use crate::shown::shown;
 
 /// The language of a scene file.
@@ -59,7 +61,10 @@ pub(super) fn plain(language: Language, key: String, message: &str) -> (String, 
         .replace("u32", "a whole number from 0 to 4294967295")
         .replace("a sequence", "a list, such as [0.0, 0.0, 1.0]")
         .replace("struct ", "the table of ");
-    let advice = instead(&key, found, &expected);
+    let advice = match unknown_name(found) {
+        Some(name) => meant_name(name, &expected),
+        None => instead(&key, found, &expected),
+    };
     let found = shortened(found)
         .replace("floating point `", "number `")
         .replace("invalid type: map", "invalid type: a table")
@@ -101,6 +106,28 @@ fn one_only(language: Language, table: &str) -> String {
         }
         #[cfg(feature = "json")]
         Language::Json => format!("a scene has one, no list of them: write \"{table}\": {{ }}"),
+    }
+}
+
+/// Returns the key or the word that a reader does not know.
+fn unknown_name(found: &str) -> Option<&str> {
+    let kinds = ["unknown field `", "unknown variant `"];
+    let name = kinds.iter().find_map(|kind| found.strip_prefix(kind))?;
+    name.strip_suffix('`')
+}
+
+/// Says which of the names that are expected was likely meant, or which table has a key of this name.
+fn meant_name(name: &str, expected: &str) -> String {
+    let names = expected.split('`').skip(1).step_by(2);
+    if let Some(nearest) = nearest(&name.to_lowercase().replace('-', "_"), names.clone()) {
+        return format!("; did you mean `{nearest}`?");
+    }
+    let tables = tables();
+    let has = |table: &&Table| table.keys().any(|key| key.name == name);
+    let mut having = tables.iter().filter(has);
+    match (having.next(), having.next()) {
+        (Some(only), None) => format!("; {} has a key of this name", only.header()),
+        _ => String::new(),
     }
 }
 
@@ -238,6 +265,32 @@ mod tests {
             ),
         ] {
             assert_eq!(words(key, message), expected);
+        }
+    }
+
+    #[test]
+    fn a_name_that_was_likely_meant_is_told() {
+        for (message, expected) in [
+            (
+                "unknown field `traget`, expected one of `eye`, `target`",
+                "; did you mean `target`?",
+            ),
+            (
+                "unknown field `fov-y`, expected one of `eye`, `fov_y`",
+                "; did you mean `fov_y`?",
+            ),
+            (
+                "unknown variant `exakt`, expected one of `simpson`, `exact`",
+                "; did you mean `exact`?",
+            ),
+            (
+                "unknown field `tone_map`, expected `width` or `height`",
+                "; [display] has a key of this name",
+            ),
+            ("unknown field `zzz`, expected `kappa`", "expected `kappa`"),
+        ] {
+            let found = words("camera", message);
+            assert!(found.ends_with(expected), "{found}");
         }
     }
 

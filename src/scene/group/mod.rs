@@ -10,6 +10,8 @@ use glam::DVec3;
 #[cfg(feature = "files")]
 pub(super) use names::key_in_groups;
 pub(crate) use placement::Placement;
+#[cfg(feature = "files")]
+pub(super) use placement::{REPEAT_KEYS, ROTATION_KEYS};
 pub use placement::{Repeat, Rotation};
 
 use super::kinds::{KIND_COUNT, for_each_kind};

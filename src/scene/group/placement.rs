@@ -21,6 +21,12 @@ pub struct Rotation {
     pub angle: f64,
 }
 
+// What is read of `rotate`.
+keys! { pub(in crate::scene) ROTATION_KEYS;
+    axis: VECTOR, NONE, Required, "of any length but zero";
+    angle: ANY, DEGREES, Required, "counterclockwise where the axis points at the viewer";
+}
+
 /// Copies of a group: number k, from 0 on, is turned by k times the angle about the axis through the group's origin,
 /// then moved by k times the step.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
@@ -37,6 +43,14 @@ pub struct Repeat {
     /// World units, in the group's own space.
     #[serde(default, deserialize_with = "read_vector")]
     pub step: DVec3,
+}
+
+// What is read of `repeat`.
+keys! { pub(in crate::scene) REPEAT_KEYS;
+    count: Whole(1, MOST_COPIES), NONE, Required, "how many copies there are";
+    axis: VECTOR, NONE, Otherwise("not turned"), "copy k, from 0 on, is turned about it by k times the angle";
+    angle: ANY, DEGREES, Otherwise("360 / count"), "from one copy to the next; needs an axis";
+    step: VECTOR, WORLD, Value("[0, 0, 0]"), "copy k is then moved by k times this";
 }
 
 impl Repeat {

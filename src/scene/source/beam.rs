@@ -108,6 +108,20 @@ impl Beam {
 }
 
 impl SourceKind for Beam {
+    keys! { KEYS;
+        tip: VECTOR, WORLD, Value("[0, 0, 0]"), "the point at which it begins";
+        direction: VECTOR, NONE, Required, "where it goes, of any length but zero";
+        cap_coefficient: ANY, NONE, Otherwise("that of the line"),
+            "the coefficient of the point's field behind the tip";
+        sphere_coefficient: ANY, NONE, Value("0"), "the coefficient of a further sphere around the tip, everywhere";
+        taper_length: POSITIVE, WORLD, Otherwise("a cap"),
+            "behind the tip the line's own field fades to 0 over this length";
+        series_length: POSITIVE, WORLD, Otherwise("none"), "over which length from the tip series go";
+    }
+
+    #[cfg(feature = "files")]
+    const ALONG: &[crate::scene::keys::Key] = super::shared::ALONG_KEYS;
+
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("tip", self.tip)?;
         direction("direction", self.direction)?;

@@ -63,6 +63,15 @@ impl Curve {
 }
 
 impl SourceKind for Curve {
+    keys! { KEYS;
+        control_points: Vectors(3, Some(3)), WORLD, Required, "three points; they may be collinear or coincide";
+        intensity: Numbers(3, None), NONE, Otherwise("1 everywhere"), "weights of a quadratic B-spline over the curve";
+        colors: Colors(2), "linear RGB", Otherwise("1 everywhere"),
+            "what red, green and blue are multiplied with along it";
+        radii: Numbers(2, None), WORLD, Otherwise("radius"), "how thick the core is along it, in the place of radius";
+        dashes: Table("dashes"), NONE, Otherwise("none"), "gaps that part the core; not with an intensity";
+    }
+
     fn check(&self, brightness: &Brightness) -> Checked {
         for (k, point) in self.control_points.iter().enumerate() {
             vector("control_points", *point).map_err(|fault| fault.at(item("control_points", k)))?;

@@ -32,6 +32,11 @@ impl Cylinder {
 }
 
 impl SourceKind for Cylinder {
+    keys! { KEYS;
+        point: VECTOR, WORLD, Value("[0, 0, 0]"), "a point of the line";
+        direction: VECTOR, NONE, Required, "where the line goes, of any length but zero";
+    }
+
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("point", self.point)?;
         direction("direction", self.direction)?;

@@ -40,6 +40,17 @@ pub struct Layer {
     pub peak: Option<f64>,
 }
 
+// What is read of `layers`.
+keys! { pub(in crate::scene) LAYER_KEYS;
+    coefficient: ANY, NONE, Otherwise("its source's"), "the papers' energy coefficient";
+    color: Color, "linear RGB", Otherwise("its source's"), "the colour";
+    profile: PROFILE, NONE, Otherwise("its source's"), "how light falls off with the distance to the core";
+    radius: NOT_NEGATIVE, WORLD, Otherwise("its source's"), "how thick the core is, 0 for none";
+    reach: POSITIVE, WORLD, Otherwise("its source's"), "the distance at which the light ends, more than the radius";
+    peak: ANY, NONE, Otherwise("its source's"),
+        "in the place of coefficient: the light of a ray straight across the core";
+}
+
 impl Layer {
     /// Returns what the keys say of it, where those of its source stand for what it does not name.
     pub(super) fn over(&self, source: &Shared<'_>) -> Shared<'static> {

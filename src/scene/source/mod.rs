@@ -17,8 +17,12 @@ mod shared;
 
 pub(super) use core::{Core, ball_around};
 pub use falloff::{Falloff, Profile};
+#[cfg(feature = "files")]
+pub(super) use layer::LAYER_KEYS;
 pub use layer::Layer;
 use layer::read_layers;
+#[cfg(feature = "files")]
+pub(super) use shared::SHARED_KEYS;
 pub(crate) use shared::{CoreLight, HasLight, Shared};
 use shared::{source, source_struct};
 
@@ -47,6 +51,14 @@ impl Light {
 
 /// What every kind of source says of itself.
 pub(crate) trait SourceKind: HasLight {
+    /// What is read of its own keys.
+    #[cfg(feature = "files")]
+    const KEYS: &[super::keys::Key];
+
+    /// What is read besides of a core along which light may change.
+    #[cfg(feature = "files")]
+    const ALONG: &[super::keys::Key] = &[];
+
     /// Checks its values; `brightness` tells which light float32 can hold.
     fn check(&self, brightness: &Brightness) -> Checked;
 

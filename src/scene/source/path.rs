@@ -138,6 +138,18 @@ impl LightPath {
 }
 
 impl SourceKind for LightPath {
+    keys! { KEYS;
+        points: Vectors(2, Some(MOST_POINTS as u32)), WORLD, Required,
+            "what the shape goes through, or is drawn towards";
+        shape: Word(&["polyline", "spline", "quadratic", "cubic"]), NONE, Value("\"polyline\""),
+            "how the points make the core";
+        closed: Flag, NONE, Value("false"), "whether the last point is joined to the first";
+        flatness: POSITIVE, WORLD, Otherwise("below 0.01 pixel"), "how far straight pieces may be off a curved shape";
+    }
+
+    #[cfg(feature = "files")]
+    const ALONG: &[crate::scene::keys::Key] = super::shared::ALONG_KEYS;
+
     fn check(&self, brightness: &Brightness) -> Checked {
         self.check_points()?;
         let (along, shared) = (self.along_keys(), self.shared().adding_up());

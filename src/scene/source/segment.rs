@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Brightness, Core, HasLight, Light, Placement, Profile, SourceKind, emissions_along, source, source_struct};
 use crate::scene::chain::{Along, LitChain, Piece, Run};
-use crate::scene::values::{Checked, Fault, finite, read_vector, vector};
+use crate::scene::values::{Checked, Fault, finite, read_pair, read_vector, vector};
 
 source_struct! {
     /// A finite line of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point between its
@@ -21,7 +21,7 @@ source_struct! {
         pub to: DVec3,
         /// Over which lengths the light rises from 0 at either end, world units; 0: it does not, and the end glows as a
         /// point does.
-        #[serde(default, skip_serializing_if = "is_even")]
+        #[serde(default, skip_serializing_if = "is_even", deserialize_with = "read_pair")]
         pub taper_lengths: [f64; 2],
     }
 }
@@ -56,6 +56,15 @@ impl Segment {
 }
 
 impl SourceKind for Segment {
+    keys! { KEYS;
+        from: VECTOR, WORLD, Required, "one end";
+        to: VECTOR, WORLD, Required, "the other end; ends that coincide make a point";
+        taper_lengths: PAIR, WORLD, Value("[0, 0]"), "over which lengths the light rises from 0 at either end";
+    }
+
+    #[cfg(feature = "files")]
+    const ALONG: &[crate::scene::keys::Key] = super::shared::ALONG_KEYS;
+
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("from", self.from)?;
         vector("to", self.to)?;

@@ -145,6 +145,26 @@ macro_rules! source_struct {
 }
 pub(super) use source_struct;
 
+// What is read of every kind.
+keys! { pub(in crate::scene) SHARED_KEYS;
+    coefficient: ANY, NONE, Value("1"), "the papers' energy coefficient; may be negative";
+    color: Color, "linear RGB", Value("[1, 1, 1]"), "the colour";
+    profile: PROFILE, NONE, Value("\"inverse-square\""), "how light falls off with the distance to the core";
+    radius: NOT_NEGATIVE, WORLD, Value("0"), "how thick the core is, 0 for none";
+    reach: POSITIVE, WORLD, Otherwise("nowhere"), "the distance at which the light ends, more than the radius";
+    peak: ANY, NONE, Otherwise("none"), "in the place of coefficient: the light of a ray straight across the core";
+    layers: Tables("layers"), NONE, Otherwise("one light"), "several lights of this core, whose sum it is";
+}
+
+// What is read besides of cores along which light may change.
+keys! { pub(in crate::scene) ALONG_KEYS;
+    intensity: Numbers(2, None), NONE, Otherwise("1 everywhere"), "what the light is multiplied with along the core";
+    colors: Colors(2), "linear RGB", Otherwise("1 everywhere"), "the same for red, green and blue";
+    radii: Numbers(2, None), WORLD, Otherwise("radius"), "how thick the core is along it, in the place of radius";
+    arc: Table("arc"), NONE, Otherwise("none"), "kinks and branches, as those of lightning";
+    dashes: Table("dashes"), NONE, Otherwise("none"), "gaps that part the core";
+}
+
 /// Makes a source of its kind's own fields; those that every kind has are at their defaults, or like another's.
 macro_rules! source {
     ($Type:ident along { $($fields:tt)* }) => {

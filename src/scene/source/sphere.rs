@@ -26,6 +26,10 @@ impl Default for Sphere {
 }
 
 impl SourceKind for Sphere {
+    keys! { KEYS;
+        center: VECTOR, WORLD, Value("[0, 0, 0]"), "the point";
+    }
+
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("center", self.center)?;
         self.shared().check(brightness, &|light| light.coefficient.abs())

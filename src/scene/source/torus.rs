@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, emissions_along, plus_z, source, source_struct};
 use crate::scene::chain::{LitChain, Piece, Run};
-use crate::scene::values::{Checked, Fault, direction, finite, positive, read_some_vector, read_vector, vector};
+use crate::scene::values::{
+    Checked, Fault, direction, finite, positive, read_some_pair, read_some_vector, read_vector, vector,
+};
 
 source_struct! {
     /// A ring of light: `1/d`, or by its [`Profile`] `1/d^2`, d the distance to the nearest point of the major circle
@@ -23,7 +25,7 @@ source_struct! {
         pub major_radius: f64,
         /// The part of the ring that there is, from one angle to another, degrees, by at most a full turn; series go
         /// from the first to the second. `None`: all of it, from 0 to 360.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "read_some_pair")]
         pub sweep: Option<[f64; 2]>,
         /// Where the angle 0 is: as seen from the centre, what of this is at right angles to the axis. Angles grow
         /// counterclockwise where the axis points at the viewer. `None`: x of the world, or y where the axis is x.
@@ -100,6 +102,18 @@ impl Torus {
 const LEAST_ACROSS: f64 = 1e-3;
 
 impl SourceKind for Torus {
+    keys! { KEYS;
+        center: VECTOR, WORLD, Value("[0, 0, 0]"), "the middle of the ring";
+        axis: VECTOR, NONE, Value("[0, 0, 1]"), "the normal of its plane, of any length but zero";
+        major_radius: POSITIVE, WORLD, Required, "the radius of the circle";
+        sweep: PAIR, DEGREES, Otherwise("all of it"),
+            "the part of the ring that there is, from one angle to a greater one";
+        start: VECTOR, NONE, Otherwise("x, or y about x"), "the direction of the angle 0, as seen from the centre";
+    }
+
+    #[cfg(feature = "files")]
+    const ALONG: &[crate::scene::keys::Key] = super::shared::ALONG_KEYS;
+
     fn check(&self, brightness: &Brightness) -> Checked {
         vector("center", self.center)?;
         direction("axis", self.axis)?;

@@ -1,0 +1,104 @@
+//! What stands below the options in every `--help`: examples, each a line that can be typed as it stands.
+
+pub const PROGRAM: &str = "\
+Examples:
+  energywave new laser
+  energywave render laser.toml -o laser.png
+  energywave help scene
+
+Exit codes: 0 success, 2 usage, 3 scene or input file, 4 no such device, 5 device failed or out of memory, \
+6 verification failed, 7 output, 130 interrupted";
+
+pub const RENDER: &str = "\
+Examples:
+  energywave render laser.toml -o laser.png
+  energywave render laser.toml -o laser.exr --size 320x180 --tolerance 1e-4
+  energywave render laser.toml -o laser.png --device reference --quiet
+  energywave new nova -o - | energywave render - -o nova.png --size 320x180";
+
+pub const NEW: &str = "\
+Examples:
+  energywave new --list
+  energywave new laser
+  energywave new magic-circle -o circle.toml --force";
+
+pub const DEVICES: &str = "\
+Examples:
+  energywave devices
+  energywave devices --json";
+
+pub const BENCH: &str = "\
+Examples:
+  energywave bench --table 2
+  energywave bench laser.toml --size 1920x1080
+  energywave bench --table 3 --json --seconds 5";
+
+pub const COMPARE: &str = "\
+Examples:
+  energywave compare laser.toml --size 64x64
+  energywave compare laser.toml --size 128x128 --json";
+
+pub const VERIFY: &str = "\
+Examples:
+  energywave verify
+  energywave verify --device gpu --tolerance 1e-5 --json";
+
+pub const SCHEMA: &str = "\
+An editor with Taplo (Even Better TOML) completes a scene whose first line is
+  #:schema scene.schema.json
+
+Examples:
+  energywave schema > scene.schema.json";
+
+pub const COMPLETIONS: &str = "\
+Examples:
+  energywave completions bash > energywave.bash
+  energywave completions zsh > _energywave";
+
+pub const MAN: &str = "\
+Examples:
+  energywave man > energywave.1
+  energywave man render > energywave-render.1";
+
+pub const HELP: &str = "\
+Examples:
+  energywave help render
+  energywave help scene
+  energywave help scene torus";
+
+#[cfg(test)]
+mod tests {
+    use clap::{CommandFactory, Parser};
+
+    use crate::cli::args::Arguments;
+
+    /// Returns the examples of a text: what stands on lines that begin with the program's name, by pipes.
+    fn examples(help: &str) -> Vec<String> {
+        let lines = help.lines().filter_map(|line| line.strip_prefix("  "));
+        let lines = lines.filter(|line| line.starts_with("energywave "));
+        lines
+            .flat_map(|line| line.split(" | ").map(str::to_owned))
+            .collect()
+    }
+
+    #[test]
+    fn every_help_has_examples_and_all_can_be_typed() {
+        let mut program = Arguments::command();
+        program.build();
+        let parse = |example: &str| {
+            let typed = example.split(" > ").next().unwrap_or_default();
+            Arguments::try_parse_from(typed.split(' '))
+        };
+        let mut helps = vec![program.clone()];
+        helps.extend(program.get_subcommands().cloned());
+        for mut command in helps {
+            let help = command.render_long_help().to_string();
+            let examples = examples(&help);
+            assert!(!examples.is_empty(), "{help}");
+            for example in examples {
+                assert!(parse(&example).is_ok(), "{example}");
+            }
+        }
+        assert!(parse("energywave render laser.toml").is_err());
+    }
+}

@@ -1,0 +1,118 @@
+//! What can be typed after every subcommand but `render`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use energywave::image::ImageSize;
+
+use super::args::{DeviceArgument, Overrides, seconds, size, tolerance};
+
+#[derive(Debug, Args)]
+pub struct NewArguments {
+    /// Name of the preset, one of those that --list shows
+    #[arg(required_unless_present = "list")]
+    pub name: Option<String>,
+    /// Scene file to write; - is standard output [default: NAME.toml]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write in the place of a file that is there
+    #[arg(long)]
+    pub force: bool,
+    /// List the presets, a line for each
+    #[arg(long, conflicts_with_all = ["name", "output", "force"])]
+    pub list: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct DevicesArguments {
+    /// Print a JSON array
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct VerifyArguments {
+    /// JSON file of rays instead of the built-in ones
+    #[arg(long)]
+    pub rays: Option<PathBuf>,
+    /// Relative error aimed at by the exact method, and allowed to it
+    #[arg(long, default_value_t = 1e-3, value_parser = tolerance, allow_hyphen_values = true)]
+    pub tolerance: f64,
+    /// Print a JSON array
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+}
+
+#[derive(Debug, Args)]
+pub struct BenchArguments {
+    /// Scene file to measure instead of the paper's tables
+    pub scene: Option<PathBuf>,
+    /// A paper's table: 2 (torus) or 3 (Bezier) of 2015, both without; 2010 (beam, with and without hidden surfaces)
+    #[arg(long, value_enum, conflicts_with = "scene")]
+    pub table: Option<TableName>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Folder for the last frame of each measurement, as EXR
+    #[arg(long, value_name = "DIR")]
+    pub frames_out: Option<PathBuf>,
+    /// Time of each measurement
+    #[arg(long, default_value_t = 1.0, value_parser = seconds)]
+    pub seconds: f64,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Scene file, TOML or JSON
+    pub scene: PathBuf,
+    /// Size of the images in pixels, such as 128x128 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
+    pub size: Option<ImageSize>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Time of each measurement of speed
+    #[arg(long, default_value_t = 0.5, value_parser = seconds)]
+    pub seconds: f64,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TableName {
+    /// A torus by Simpson's rule (2015)
+    #[value(name = "2")]
+    Torus,
+    /// A Bezier curve by Simpson's rule (2015)
+    #[value(name = "3")]
+    Bezier,
+    /// A beam in closed form, with and without hidden surfaces
+    #[value(name = "2010")]
+    Beam,
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// The shell
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManArguments {
+    /// A subcommand [default: the program]
+    pub subcommand: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct HelpArguments {
+    /// A subcommand; or scene, for the keys of scene files, and one of their tables
+    #[arg(value_name = "TOPIC", num_args = 0..=2)]
+    pub topic: Vec<String>,
+}
