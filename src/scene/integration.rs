@@ -311,7 +311,7 @@ pub enum Measure {
 #[non_exhaustive]
 pub enum Antialias {
     /// All that pass its square: the pixel is the mean of their light, so that thin cores that move do not flicker.
-    /// Where a method other than `exact` takes the integrals, or [`Reduction::Rms`] their roots, as [`Antialias::None`].
+    /// Where a method other than `exact` takes integrals, or [`Reduction::Rms`] their roots, as [`Antialias::None`].
     #[default]
     Footprint,
     /// The one through its centre, as in the papers.
