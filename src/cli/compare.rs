@@ -2,14 +2,18 @@
 
 use std::time::Duration;
 
+use energywave::image::{Display, ImageFile, ImageFormat, relative_errors};
 use energywave::papers::{Accuracy, accuracies};
 use energywave::scene::{Antialias, Method};
-use energywave::{Device, Renderer};
+use energywave::{Device, Error, RadianceImage, Renderer, Scene};
 use serde::Serialize;
 
+use super::error_map;
 use super::progress::{Progress, catch_interrupts};
 use super::subcommands::CompareArguments;
-use super::{Outcome, choose_devices, note, print, print_json, read_scene, tell_depths};
+use super::{
+    Outcome, choose_devices, method_name, note, print, print_json, read_scene, tell_depths,
+};
 
 #[derive(Serialize)]
 struct Row {
@@ -44,7 +48,14 @@ impl From<Accuracy> for Row {
 }
 
 pub fn run(arguments: &CompareArguments) -> Outcome {
-    let scene = read_scene(&arguments.scene, |scene, _| {
+    let maps = arguments.maps.iter().map(ImageFile::create);
+    let maps = maps.collect::<Result<Vec<_>, _>>()?;
+    let mut mapped = Method::default();
+    let scene = read_scene(&arguments.scene, |scene, keys| {
+        mapped = Method::Exact {
+            tolerance: keys.tolerance,
+            sampling: keys.sampling,
+        };
         scene.image = arguments.size.unwrap_or(scene.image);
         scene.integration.antialias = Antialias::None; // methods are compared along rays
         Ok(())
@@ -60,6 +71,10 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
     let mut reference = Renderer::new(&Device::reference())?;
     let truth = reference.render_with_progress(&exact, &mut |share| progress.report(share))?;
     drop(progress);
+    if !maps.is_empty() {
+        exact.integration.method = mapped;
+        write_maps(maps, &renderer.render(&exact)?, &truth, &exact)?;
+    }
     let time = Duration::from_secs_f64(arguments.seconds);
     let rows: Vec<Row> = accuracies(&mut renderer, &scene, &truth, time)?
         .into_iter()
@@ -69,6 +84,31 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
         return print_json(&rows);
     }
     print(&table(&rows))
+}
+
+/// Writes the relative errors of an image: an EXR as they are, another format as a picture of the worst channel.
+fn write_maps(
+    maps: Vec<ImageFile>,
+    image: &RadianceImage,
+    truth: &RadianceImage,
+    scene: &Scene,
+) -> Result<(), Error> {
+    let errors = relative_errors(image, truth)?
+        .ok_or_else(|| Error::Unsupported("the truth has another size".to_owned()))?;
+    for map in maps {
+        match map.format() {
+            ImageFormat::Exr => map
+                .note("content", "relative error of each channel against float64")
+                .note("method", method_name(scene.integration.method))
+                .write(&errors, &Display::default())?,
+            _ => map.write_picture(&error_map::picture(&errors)?)?,
+        }
+    }
+    note(&format!(
+        "error map: {}",
+        method_name(scene.integration.method)
+    ));
+    Ok(())
 }
 
 /// Lists the relative errors of the pixels against the reference, and frames a second.

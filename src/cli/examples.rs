@@ -35,7 +35,7 @@ Examples:
 
 pub const COMPARE: &str = "\
 Examples:
-  energywave compare laser.toml --size 64x64
+  energywave compare laser.toml --size 64x64 --map errors.png --map errors.exr
   energywave compare laser.toml --size 128x128 --json";
 
 pub const VERIFY: &str = "\

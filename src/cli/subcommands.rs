@@ -74,6 +74,10 @@ pub struct CompareArguments {
     /// Size of the images in pixels, such as 128x128 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<ImageSize>,
+    /// Map of the relative errors of the exact method to write: .exr (of R, G, B) or .png (in colours, on a logarithmic
+    /// scale from 1e-7 to 1e-1); several may be given
+    #[arg(long = "map", value_name = "FILE")]
+    pub maps: Vec<PathBuf>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
