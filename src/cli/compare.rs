@@ -10,10 +10,9 @@ use serde::Serialize;
 
 use super::error_map;
 use super::progress::{Progress, catch_interrupts};
+use super::records::{Origin, Spread};
 use super::subcommands::CompareArguments;
-use super::{
-    Outcome, choose_devices, method_name, note, print, print_json, read_scene, tell_depths,
-};
+use super::{Outcome, choose_devices, method_name, names, note, print, read_scene, tell_depths};
 
 #[derive(Serialize)]
 struct Row {
@@ -25,10 +24,15 @@ struct Row {
     p999: f64,
     rms: f64,
     fps: f64,
+    device: String,
+    #[serde(flatten)]
+    spread: Spread,
+    #[serde(flatten)]
+    origin: Origin,
 }
 
-impl From<Accuracy> for Row {
-    fn from(accuracy: Accuracy) -> Self {
+impl Row {
+    fn new(accuracy: Accuracy, device: &str, origin: &Origin) -> Self {
         let (divisions, tolerance) = match accuracy.method {
             Method::Simpson { divisions } => (Some(divisions), None),
             Method::Exact { tolerance, .. } => (None, Some(tolerance)),
@@ -43,6 +47,9 @@ impl From<Accuracy> for Row {
             p999: accuracy.difference.p999,
             rms: accuracy.difference.rms,
             fps: accuracy.fps,
+            device: device.to_owned(),
+            spread: accuracy.times.into(),
+            origin: origin.clone(),
         }
     }
 }
@@ -62,6 +69,7 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
     })?;
     tell_depths(&scene);
     let devices = choose_devices(arguments.device.device.as_deref())?;
+    let origin = Origin::now(&devices);
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
     catch_interrupts();
     note("the truth is computed in float64 first; --size makes it quicker");
@@ -78,12 +86,12 @@ pub fn run(arguments: &CompareArguments) -> Outcome {
     let time = Duration::from_secs_f64(arguments.seconds);
     let rows: Vec<Row> = accuracies(&mut renderer, &scene, &truth, time)?
         .into_iter()
-        .map(Row::from)
+        .map(|accuracy| Row::new(accuracy, &names(&devices), &origin))
         .collect();
-    if arguments.json {
-        return print_json(&rows);
+    match arguments.data.is_text() {
+        true => print(&table(&rows)),
+        false => arguments.data.print(&rows),
     }
-    print(&table(&rows))
 }
 
 /// Writes the relative errors of an image: an EXR as they are, another format as a picture of the worst channel.

@@ -31,7 +31,8 @@ pub const BENCH: &str = "\
 Examples:
   energywave bench --table 2
   energywave bench laser.toml --size 1920x1080
-  energywave bench --table 3 --json --seconds 5";
+  energywave bench --table 3 --json --seconds 5
+  energywave bench --table 2 --csv > table-2.csv";
 
 pub const COMPARE: &str = "\
 Examples:

@@ -10,6 +10,7 @@ mod examples;
 mod help;
 mod new;
 mod progress;
+mod records;
 mod render;
 mod scene_help;
 mod subcommands;

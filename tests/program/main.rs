@@ -13,7 +13,7 @@ mod cameras; // reads matrices of engines, and refuses what is none
 #[cfg(unix)] // shells, signals and the loader's environment variables
 mod cli; // runs the program: exit codes, messages and outputs
 mod clip_depths; // reads depth files of engines
-mod compares; // maps errors
+mod compares; // maps errors, and reads measurements as data
 mod damaged; // changes bytes of images and scenes
 #[cfg(unix)] // as cli
 mod depths; // reads depth images of other programs
