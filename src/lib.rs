@@ -80,6 +80,8 @@ pub use opencl::{
     suit_pocl,
 };
 pub use opencl3; // whose handles hosts give
+#[cfg(feature = "files")]
+pub use output::TextFile;
 pub use render::{Device, Devices, MappedImage, Renderer};
 pub use scene::{Ray, Scene};
 pub use shown::{shown, shown_lines};

@@ -40,6 +40,9 @@ pub enum Command {
     /// Compare the methods on a scene: error against float64, and frames a second
     #[command(after_help = examples::COMPARE)]
     Compare(CompareArguments),
+    /// Draw the papers' figures into a folder, with a page that shows each beside its caption
+    #[command(after_help = examples::FIGURES)]
+    Figures(FiguresArguments),
     /// Check a device against rays whose integrals are known
     #[command(after_help = examples::VERIFY)]
     Verify(VerifyArguments),

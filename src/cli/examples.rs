@@ -39,6 +39,11 @@ Examples:
   energywave compare laser.toml --size 64x64 --map errors.png --map errors.exr
   energywave compare laser.toml --size 128x128 --json";
 
+pub const FIGURES: &str = "\
+Examples:
+  energywave figures -o figures
+  energywave figures -o figures --size 512x512";
+
 pub const VERIFY: &str = "\
 Examples:
   energywave verify

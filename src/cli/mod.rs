@@ -7,6 +7,7 @@ mod devices;
 mod environment;
 mod error_map;
 mod examples;
+mod figures;
 mod help;
 mod new;
 mod progress;
@@ -63,6 +64,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Figures(arguments) => figures::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Schema => print(&format!("{}\n", json_schema())),
         Command::Completions(arguments) => help::completions(&arguments),

@@ -87,6 +87,18 @@ pub struct CompareArguments {
     pub device: DeviceArgument,
 }
 
+#[derive(Debug, Args)]
+pub struct FiguresArguments {
+    /// Folder for the pictures and index.html; it is made where there is none
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Size of the pictures in pixels, such as 512x512 [default: those of the scenes]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
+    pub size: Option<ImageSize>,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum TableName {
     /// A torus by Simpson's rule (2015)

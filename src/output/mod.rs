@@ -5,6 +5,7 @@
 //! no plain file (a pipe, a device, standard output) is written through; so is a file that must stay the one it is,
 //! because it has other names, another owner, or is mounted.
 
+mod text;
 #[cfg(unix)]
 mod unix;
 
@@ -13,6 +14,8 @@ use std::io::{self, BufWriter, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
+
+pub use text::TextFile;
 
 /// What an encoder writes to.
 pub(crate) trait Sink: Write + Seek {}

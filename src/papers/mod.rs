@@ -1,6 +1,8 @@
 //! The papers' speed tables (Watanabe, Abe, Konno 2015, Tables 2 and 3; Abe, Watanabe 2010), and the speed of any
 //! scene: whole frames, the image in host memory at the end of each, a new camera for every frame.
 
+#[cfg(feature = "files")]
+mod figures;
 mod occluders;
 mod table_2010;
 mod times;
@@ -10,6 +12,8 @@ use std::time::{Duration, Instant};
 
 use glam::{DMat4, DQuat, DVec3};
 
+#[cfg(feature = "files")]
+pub use figures::Figure;
 pub use occluders::tetrahedra;
 pub use table_2010::{Cell2010, PAPER_CPU_FPS, TABLE_2010, camera_2010, single_threaded_fps};
 pub use times::Times;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::Result;
-use crate::output::Output;
+use crate::output::TextFile;
 
 /// A scene of an effect to begin with: a TOML file whose comments say what to change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,6 +59,6 @@ impl Preset {
     /// # Errors
     /// [`Error::Output`](crate::Error::Output) if it cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        Output::create(path.as_ref())?.write_with(|writer| writer.write_all(self.text.as_bytes()))
+        TextFile::create(path)?.write(self.text)
     }
 }

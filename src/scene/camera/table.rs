@@ -69,7 +69,7 @@ keys! { pub(in crate::scene) CAMERA_KEYS;
     target: VECTOR, WORLD, RequiredWithout("view"), "the point looked at, in the middle of the image";
     up: VECTOR, NONE, Value("[0, 0, 1]"), "up in the image; need not be perpendicular to the view";
     fov_y: from_to(0.001, 179.9), DEGREES, Value("45"), "full vertical angle of view";
-    near: POSITIVE, WORLD, Otherwise("1, or the projection's"),
+    near: POSITIVE, WORLD, Otherwise("1, or projection"),
         "from the eye to the projection plane, where rays begin";
     ray_length: POSITIVE, WORLD, Otherwise("past all sources"), "the length of every ray";
     jitter: PAIR, PIXELS, Value("[0, 0]"), "moves rays right and down within their pixels";

@@ -1,0 +1,151 @@
+//! The papers' figures: scenes of `scenes/`, each with its caption.
+
+use super::tetrahedra;
+use crate::error::Result;
+use crate::image::ImageSize;
+use crate::scene::Scene;
+
+/// A figure of a paper, as a scene in TOML that begins with its caption.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Figure {
+    /// What its file is called, such as `figure-07`, or `2010-figure-08` where the paper is not that of 2015.
+    pub name: &'static str,
+    /// The scene. Where surfaces hide its light it names a file, of which [`Figure::scene`] has no need.
+    pub text: &'static str,
+}
+
+macro_rules! figures {
+    ($($name:literal),*) => {
+        &[$(Figure {
+            name: $name,
+            text: include_str!(concat!("../../scenes/", $name, ".toml")),
+        }),*]
+    };
+}
+
+impl Figure {
+    /// All figures: those of 2015, 2010 and 2006.
+    pub const ALL: &[Self] = figures!(
+        "figure-07",
+        "figure-08",
+        "figure-09",
+        "figure-10",
+        "figure-11",
+        "figure-12-left",
+        "figure-12-right",
+        "figure-14",
+        "figure-15",
+        "figure-16",
+        "figure-17",
+        "2010-figure-08",
+        "2010-figure-09",
+        "2010-figure-10",
+        "2010-figure-11",
+        "2010-figure-12",
+        "2010-figure-13",
+        "2010-figure-14",
+        "2010-figure-15",
+        "2010-figure-16",
+        "2010-figure-17",
+        "2010-figure-18",
+        "2006-figure-5-1",
+        "2006-figure-5-3-20",
+        "2006-figure-5-3-40",
+        "2006-figure-5-3-60"
+    );
+
+    /// Says what it shows: the comment that its scene begins with, in a line.
+    #[must_use]
+    pub fn caption(&self) -> String {
+        let lines = self.text.lines().map_while(|line| line.strip_prefix('#'));
+        lines.map(str::trim).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Makes its scene, of its own size without one. The tetrahedra of 2010, figures 15-18, hide light in every size.
+    ///
+    /// # Errors
+    /// Those of [`tetrahedra`].
+    pub fn scene(&self, size: Option<ImageSize>) -> Result<Scene> {
+        let hides = self.text.contains("\n[depth]\n");
+        Scene::from_reader_with(self.text.as_bytes(), self.name, |scene, _| {
+            scene.image = size.unwrap_or(scene.image);
+            if hides {
+                scene.depth = Some(tetrahedra(&scene.camera, scene.image)?);
+            }
+            Ok(())
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn depths(scene: &Scene) -> Vec<f32> {
+        let depth = scene.depth.as_ref();
+        depth.map_or(Vec::new(), |depth| depth.as_slice().to_vec())
+    }
+
+    #[test]
+    fn every_figure_of_the_repository_is_here_and_is_its_file() {
+        let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+        let mut names: Vec<String> = std::fs::read_dir(&scenes)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name.contains("figure-") && name.ends_with(".toml"))
+            .collect();
+        let mut found: Vec<String> = Figure::ALL
+            .iter()
+            .map(|figure| format!("{}.toml", figure.name))
+            .collect();
+        names.sort();
+        found.sort();
+        assert_eq!(found, names);
+        for figure in Figure::ALL {
+            let path = scenes.join(format!("{}.toml", figure.name));
+            let (scene, file) = (
+                figure.scene(None).unwrap(),
+                Scene::from_file(&path).unwrap(),
+            );
+            assert_eq!((scene.image, &scene.display), (file.image, &file.display));
+            let (found, known) = (depths(&scene), depths(&file));
+            assert_eq!(found.len(), known.len());
+            // The file's rays have an angle of more digits: at an outline one may pass that the other does not.
+            let is_off = |(a, b): &(f32, f32)| {
+                a != b && ((a - b).abs() / b > 1e-4 || a.is_infinite() != b.is_infinite())
+            };
+            let off = found.into_iter().zip(known).filter(is_off).count();
+            assert!(1000 * off <= scene.image.pixels(), "{}: {off}", figure.name);
+            assert!(
+                figure.caption().starts_with("Figure"),
+                "{}",
+                figure.caption()
+            );
+        }
+    }
+
+    #[test]
+    fn a_figure_has_other_sizes_and_a_caption_in_one_line() {
+        let named = |name| Figure::ALL.iter().find(|it| it.name == name).unwrap();
+        let size = ImageSize {
+            width: 40,
+            height: 30,
+        };
+        let scene = named("2010-figure-16").scene(Some(size)).unwrap();
+        assert_eq!((scene.image, scene.depth.unwrap().size()), (size, size));
+        assert!(
+            named("figure-07")
+                .scene(Some(size))
+                .unwrap()
+                .depth
+                .is_none()
+        );
+        assert_eq!(
+            named("figure-14").caption(),
+            "Figure 14 of Watanabe, Abe, Konno 2015: a torus, t = 8.0, for several numbers of divisions (--divisions). \
+             R is not given there."
+        );
+    }
+}
