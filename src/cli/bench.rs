@@ -12,8 +12,9 @@ use energywave::scene::{Method, Sampling};
 use energywave::{Device, DeviceType, Error, Renderer, Scene, shown};
 use serde::Serialize;
 
+use super::records::{Origin, Spread};
 use super::subcommands::{BenchArguments, TableName};
-use super::{Outcome, choose_devices, names, note, print, print_json, read_scene, tell_depths};
+use super::{Outcome, choose_devices, names, note, print, read_scene, tell_depths};
 
 /// A cell of a table.
 #[derive(Serialize)]
@@ -28,6 +29,10 @@ struct Cell {
     kernel_ms: f64,
     frame: u32,
     device: String,
+    #[serde(flatten)]
+    spread: Spread,
+    #[serde(flatten)]
+    origin: Origin,
 }
 
 /// A cell of the table of 2010.
@@ -46,10 +51,12 @@ struct BeamCell {
     /// The same by tiles.
     tiles_fps: f64,
     device: String,
+    #[serde(flatten)]
+    spread: Spread,
+    #[serde(flatten)]
+    origin: Origin,
     /// The last cell on the float64 reference, on one thread, and what the paper reports without a GPU.
-    #[serde(skip_serializing_if = "Option::is_none")]
     single_threaded_fps: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     paper_single_threaded_fps: Option<f64>,
 }
 
@@ -67,6 +74,10 @@ struct SceneSpeed {
     field_evaluations: u64,
     frame: u32,
     device: String,
+    #[serde(flatten)]
+    spread: Spread,
+    #[serde(flatten)]
+    origin: Origin,
 }
 
 pub fn run(arguments: &BenchArguments) -> Outcome {
@@ -87,6 +98,7 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
 
 fn bench_tables(arguments: &BenchArguments, tables: &[Table]) -> Outcome {
     let (devices, mut renderer) = prepare(arguments)?;
+    let origin = Origin::now(&devices);
     let mut cells = Vec::new();
     for &table in tables {
         for (row, resolution) in RESOLUTIONS.into_iter().enumerate() {
@@ -107,22 +119,22 @@ fn bench_tables(arguments: &BenchArguments, tables: &[Table]) -> Outcome {
                     kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
                     frame: speed.frame,
                     device: names(&devices),
+                    spread: speed.times.into(),
+                    origin: origin.clone(),
                 };
-                if !arguments.json {
+                if arguments.data.is_text() {
                     print_cell(&cell, cells.is_empty())?;
                 }
                 cells.push(cell);
             }
         }
     }
-    if arguments.json {
-        print_json(&cells)?;
-    }
-    Ok(())
+    arguments.data.print(&cells)
 }
 
 fn bench_table_2010(arguments: &BenchArguments) -> Outcome {
     let (devices, mut renderer) = prepare(arguments)?;
+    let origin = Origin::now(&devices);
     let mut cells: Vec<BeamCell> = Vec::new();
     for (number, known) in TABLE_2010.into_iter().enumerate() {
         let mut scene = known.scene()?;
@@ -147,18 +159,17 @@ fn bench_table_2010(arguments: &BenchArguments) -> Outcome {
             frame: speed.frame,
             tiles_fps: by_tiles.fps,
             device: names(&devices),
+            spread: speed.times.into(),
+            origin: origin.clone(),
             single_threaded_fps,
             paper_single_threaded_fps: single_threaded_fps.map(|_| PAPER_CPU_FPS),
         };
-        if !arguments.json {
+        if arguments.data.is_text() {
             print_beam_cell(&cell, number == 0)?;
         }
         cells.push(cell);
     }
-    if arguments.json {
-        print_json(&cells)?;
-    }
-    Ok(())
+    arguments.data.print(&cells)
 }
 
 fn exact(sampling: Sampling) -> Method {
@@ -222,6 +233,7 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     let scene = read_scene(path, |scene, keys| arguments.overrides.apply(scene, keys))?;
     tell_depths(&scene);
     let (devices, mut renderer) = prepare(arguments)?;
+    let origin = Origin::now(&devices);
     let speed = measure(&mut renderer, &scene, time(arguments))?;
     let stem = match path.file_stem() {
         Some(stem) if stem != "-" => stem.to_string_lossy(),
@@ -246,9 +258,11 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
         field_evaluations: cost.samples,
         frame: speed.frame,
         device: names(&devices),
+        spread: speed.times.into(),
+        origin,
     };
-    if arguments.json {
-        return print_json(&record);
+    if !arguments.data.is_text() {
+        return arguments.data.print_one(&record);
     }
     print(&format!(
         "{}: {:.2} frames a second at {}x{}, {:.3} ms in kernels; {} integrals, {} samples a frame\n",

@@ -31,11 +31,12 @@ pub const BENCH: &str = "\
 Examples:
   energywave bench --table 2
   energywave bench laser.toml --size 1920x1080
-  energywave bench --table 3 --json --seconds 5";
+  energywave bench --table 3 --json --seconds 5
+  energywave bench --table 2 --csv > table-2.csv";
 
 pub const COMPARE: &str = "\
 Examples:
-  energywave compare laser.toml --size 64x64
+  energywave compare laser.toml --size 64x64 --map errors.png --map errors.exr
   energywave compare laser.toml --size 128x128 --json";
 
 pub const VERIFY: &str = "\

@@ -5,10 +5,12 @@ mod bench;
 mod compare;
 mod devices;
 mod environment;
+mod error_map;
 mod examples;
 mod help;
 mod new;
 mod progress;
+mod records;
 mod render;
 mod scene_help;
 mod subcommands;
@@ -22,7 +24,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use anstyle::AnsiColor;
 use clap::Parser;
 use energywave::scene::keys::json_schema;
-use energywave::scene::{MethodKeys, Scene};
+use energywave::scene::{Method, MethodKeys, Scene};
 use energywave::{Device, DeviceType, Devices, Error, ErrorKind, shown, shown_lines};
 
 use args::{Arguments, Command};
@@ -169,6 +171,16 @@ fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
 fn names(devices: &[Device]) -> String {
     let names: Vec<&str> = devices.iter().map(|device| device.name.as_str()).collect();
     names.join(" + ")
+}
+
+/// Returns a method in words, with what it is asked for.
+fn method_name(method: Method) -> String {
+    match method {
+        Method::Exact { tolerance, .. } => format!("exact, tolerance {tolerance:e}"),
+        Method::Simpson { divisions } => format!("simpson, {divisions} divisions"),
+        Method::Jittered { divisions, .. } => format!("jittered, {divisions} divisions"),
+        _ => String::new(),
+    }
 }
 
 /// Reads a scene from a file, or from standard input if it is called `-`, and says what was hardly meant in it.

@@ -5,12 +5,11 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use energywave::image::{Display, Exposure, ImageFile, ImageFormat};
-use energywave::scene::Method;
 use energywave::{Device, Error, RadianceImage, Renderer, Scene, shown};
 
 use super::args::{FormatName, RenderArguments};
 use super::progress::{Progress, catch_interrupts, was_interrupted};
-use super::{Outcome, choose_devices, names, note, read_scene, tell_depths};
+use super::{Outcome, choose_devices, method_name, names, note, read_scene, tell_depths};
 
 pub fn run(arguments: RenderArguments) -> Outcome {
     let format = format(&arguments)?;
@@ -66,16 +65,10 @@ fn noted(output: ImageFile, name: &Path, scene: &Scene, devices: &[Device]) -> I
         true => "standard input".to_owned(),
         false => shown(&name.file_name().unwrap_or_default().to_string_lossy()),
     };
-    let method = match scene.integration.method {
-        Method::Exact { tolerance, .. } => format!("exact, tolerance {tolerance:e}"),
-        Method::Simpson { divisions } => format!("simpson, {divisions} divisions"),
-        Method::Jittered { divisions, .. } => format!("jittered, {divisions} divisions"),
-        _ => String::new(),
-    };
     let devices: Vec<String> = devices.iter().map(ToString::to_string).collect();
     output
         .note("scene", name)
-        .note("method", method)
+        .note("method", method_name(scene.integration.method))
         .note("device", devices.join(", "))
 }
 

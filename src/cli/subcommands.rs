@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use energywave::image::ImageSize;
 
 use super::args::{DeviceArgument, Overrides, seconds, size, tolerance};
+use super::records::DataArgument;
 
 #[derive(Debug, Args)]
 pub struct NewArguments {
@@ -52,9 +53,8 @@ pub struct BenchArguments {
     /// A paper's table: 2 (torus) or 3 (Bezier) of 2015, both without; 2010 (beam, with and without hidden surfaces)
     #[arg(long, value_enum, conflicts_with = "scene")]
     pub table: Option<TableName>,
-    /// Print JSON
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub data: DataArgument,
     /// Folder for the last frame of each measurement, as EXR
     #[arg(long, value_name = "DIR")]
     pub frames_out: Option<PathBuf>,
@@ -74,9 +74,12 @@ pub struct CompareArguments {
     /// Size of the images in pixels, such as 128x128 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<ImageSize>,
-    /// Print JSON
-    #[arg(long)]
-    pub json: bool,
+    /// Map of the relative errors of the exact method to write: .exr (of R, G, B) or .png (in colours, on a logarithmic
+    /// scale from 1e-7 to 1e-1); several may be given
+    #[arg(long = "map", value_name = "FILE")]
+    pub maps: Vec<PathBuf>,
+    #[command(flatten)]
+    pub data: DataArgument,
     /// Time of each measurement of speed
     #[arg(long, default_value_t = 0.5, value_parser = seconds)]
     pub seconds: f64,

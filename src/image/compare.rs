@@ -1,6 +1,7 @@
 //! Comparison of two images in linear radiance. The worst pixel is what counts: a mean hides faults.
 
 use super::RadianceImage;
+use crate::error::Result;
 
 /// Relative differences of the pixels of an image from those of a reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +51,30 @@ pub fn compare(image: &RadianceImage, reference: &RadianceImage) -> Option<Diffe
     })
 }
 
+/// Returns the relative error of each channel of each pixel, as [`compare`] has them, in an image of alpha 1; `None` if
+/// the sizes differ.
+///
+/// # Errors
+/// [`Error::OutOfMemory`](crate::Error::OutOfMemory) as [`RadianceImage::new`].
+pub fn relative_errors(
+    image: &RadianceImage,
+    reference: &RadianceImage,
+) -> Result<Option<RadianceImage>> {
+    if image.size() != reference.size() {
+        return Ok(None);
+    }
+    let mut errors = RadianceImage::new(image.size())?;
+    let pixels = image.as_slice().chunks_exact(4);
+    let pixels = pixels.zip(reference.as_slice().chunks_exact(4));
+    for (error, (pixel, truth)) in errors.as_mut_slice().chunks_exact_mut(4).zip(pixels) {
+        for channel in 0..3 {
+            error[channel] = relative(pixel[channel], truth[channel]) as f32;
+        }
+        error[3] = 1.0;
+    }
+    Ok(Some(errors))
+}
+
 fn relative(value: f32, reference: f32) -> f64 {
     let (value, reference) = (f64::from(value), f64::from(reference));
     if value == reference {
@@ -83,10 +108,16 @@ mod tests {
         assert_eq!((difference.max, difference.worst), (0.5, (1, 1)));
         image.as_mut_slice()[0] = f32::NAN;
         assert_eq!(compare(&image, &reference).unwrap().worst, (0, 0));
+        let errors = relative_errors(&image, &reference).unwrap().unwrap();
+        assert_eq!(errors.pixel(0, 0), Some([f32::INFINITY, 0.0, 0.0, 1.0]));
+        assert_eq!(errors.pixel(1, 1), Some([0.0, 0.5, 0.0, 1.0]));
+        assert_eq!(errors.pixel(2, 1), Some([0.0, 0.0, 0.0, 1.0]));
         let other = RadianceImage::new(ImageSize {
             width: 2,
             height: 3,
         });
-        assert_eq!(compare(&other.unwrap(), &reference), None);
+        let other = other.unwrap();
+        assert_eq!(compare(&other, &reference), None);
+        assert_eq!(relative_errors(&other, &reference).unwrap(), None);
     }
 }

@@ -59,6 +59,26 @@ impl ImageFile {
         self
     }
 
+    /// Returns the format that it will have.
+    #[must_use]
+    pub fn format(&self) -> ImageFormat {
+        self.format
+    }
+
+    /// Encodes a picture, and puts the file in its place as [`ImageFile::write`] does.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for an EXR, which holds light, [`Error::Scene`] if the format cannot hold the picture's
+    /// alpha or its 16 bits, [`Error::Output`] as [`ImageFile::write`].
+    pub fn write_picture(self, picture: &DisplayImage) -> Result<()> {
+        if self.format == ImageFormat::Exr {
+            let message = "an EXR holds linear light; a picture for screens is a PNG";
+            return Err(Error::Unsupported(message.to_owned()));
+        }
+        self.format.check(&picture.display())?;
+        write_picture(self.format, self.output, picture, None)
+    }
+
     /// Encodes the image as `display` has it, tone-mapped if the format is for screens, and puts the file in its place.
     /// A file that is there keeps its mode and its owner.
     ///
@@ -174,8 +194,7 @@ impl DisplayImage {
         if file.format == ImageFormat::Exr {
             return Err(Error::OutputFormat(path.to_owned()));
         }
-        file.format.check(&self.display())?;
-        write_picture(file.format, file.output, self, None)
+        file.write_picture(self)
     }
 
     /// Returns what a format must be able to hold.

@@ -31,7 +31,7 @@ pub use background::{Background, BackgroundImage};
 pub use bloom::Bloom;
 pub use clip::{ClipDepth, ClipRange};
 pub(crate) use clip::{axis_of, check_matrix, rows};
-pub use compare::{Difference, compare};
+pub use compare::{Difference, compare, relative_errors};
 pub use depth::{DepthAlong, DepthImage, DepthOptions};
 pub use display::{Alpha, Display};
 pub use exposure::Exposure;
@@ -138,6 +138,17 @@ pub struct DisplayImage {
 }
 
 impl DisplayImage {
+    /// Makes a picture of 8-bit sRGB, three bytes a pixel by rows from the top left; `None` if there are more or fewer.
+    #[must_use]
+    pub fn from_rgb(size: ImageSize, data: Vec<u8>) -> Option<Self> {
+        (data.len() == 3 * size.pixels()).then_some(Self {
+            size,
+            channels: 3,
+            bits: 8,
+            data,
+        })
+    }
+
     /// Returns width and height in pixels.
     #[must_use]
     pub fn size(&self) -> ImageSize {

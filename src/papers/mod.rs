@@ -3,6 +3,7 @@
 
 mod occluders;
 mod table_2010;
+mod times;
 
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
@@ -11,6 +12,7 @@ use glam::{DMat4, DQuat, DVec3};
 
 pub use occluders::tetrahedra;
 pub use table_2010::{Cell2010, PAPER_CPU_FPS, TABLE_2010, camera_2010, single_threaded_fps};
+pub use times::Times;
 
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
@@ -130,6 +132,8 @@ pub fn turned(scene: &Scene, frame: u32) -> Scene {
 pub struct Speed {
     /// Frames a second, by the median time of a whole frame.
     pub fps: f64,
+    /// What whole frames took.
+    pub times: Times,
     /// Median time that the device worked on kernels, a frame.
     pub kernel: Duration,
     /// What the last frame cost.
@@ -174,9 +178,11 @@ pub fn measure(renderer: &mut Renderer, scene: &Scene, time: Duration) -> Result
     image
         .as_mut_slice()
         .copy_from_slice(&renderer.render_mapped(&scenes[last])?);
+    let times = Times::of(frames)?;
     Ok(Speed {
-        fps: 1.0 / median(&mut frames)?.as_secs_f64(),
-        kernel: median(&mut kernels)?,
+        fps: times.fps(),
+        times,
+        kernel: Times::of(kernels)?.median,
         cost: renderer.last_cost(),
         frame: last as u32,
         image,
@@ -226,6 +232,8 @@ pub struct Accuracy {
     pub difference: Difference,
     /// Frames a second, as [`measure`] has them.
     pub fps: f64,
+    /// What whole frames took.
+    pub times: Times,
 }
 
 /// Compares Simpson's rule with 64, 128, 200, 256 and 1024 divisions and the method `exact` at 1e-2, 1e-3 and 1e-4 with
@@ -251,19 +259,13 @@ pub fn accuracies(
         let image = renderer.render(&scene)?;
         let difference = compare(&image, truth)
             .ok_or_else(|| Error::Unsupported("the truth has another size".to_owned()))?;
+        let speed = measure(renderer, &scene, time)?;
         rows.push(Accuracy {
             method,
             difference,
-            fps: measure(renderer, &scene, time)?.fps,
+            fps: speed.fps,
+            times: speed.times,
         });
     }
     Ok(rows)
-}
-
-fn median(times: &mut [Duration]) -> Result<Duration> {
-    times.sort();
-    times
-        .get(times.len() / 2)
-        .copied()
-        .ok_or_else(|| Error::Unsupported("no frame was timed".to_owned()))
 }

@@ -2,7 +2,7 @@
 
 use energywave::Scene;
 use energywave::image::{ClipDepth, ClipRange, ImageSize};
-use energywave::scene::Camera;
+use energywave::scene::{Antialias, Camera};
 use fastrand::Rng;
 use glam::dcamera as camera;
 use glam::{DMat4, DVec2, DVec3};
@@ -34,6 +34,7 @@ impl Engine {
     pub fn scene(&self) -> Scene {
         let mut scene = Scene::new(self.camera());
         scene.image = SIZE;
+        scene.integration.antialias = Antialias::None;
         scene
     }
 

@@ -9,7 +9,7 @@ use crate::common::program::{Folder, device, expect, stderr};
 use energywave::image::DepthAlong;
 use energywave::scene::{Method, Sampling};
 use energywave::verify::built_in_rays;
-use energywave::{Device, Devices, Error, Renderer, RendererOptions, Scene};
+use energywave::{Device, Devices, Error, RadianceImage, Renderer, RendererOptions, Scene};
 use serde_json::Value;
 
 /// PoCL shows its CPU as often as it is told to, to a whole process.
@@ -255,8 +255,8 @@ fn the_program_draws_with_all_devices_or_those_of_a_list() {
             let several = render(name, &["--device", choice]);
             expect(&several, 0, "device: 0: pthread");
             assert!(stderr(&several).contains("device: 1: pthread"));
-            let bytes = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
-            assert!(bytes(name) == bytes("one.exr"), "{name}");
+            let image = |name: &str| RadianceImage::open(folder.path().join(name)).unwrap();
+            assert!(image(name) == image("one.exr"), "{name}");
         }
         for (choice, code, words) in [
             ("0,0", 4, "names a device twice: 0: pthread"),

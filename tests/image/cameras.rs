@@ -4,7 +4,7 @@
 use crate::common::engines::{SIZE, engine};
 use crate::common::{self, difference, meets, renderer};
 use energywave::image::{ClipRange, DepthAlong, ImageSize};
-use energywave::scene::{Camera, Method, Profile, Sampling, Segment, Sphere, Torus};
+use energywave::scene::{Antialias, Camera, Method, Profile, Sampling, Segment, Sphere, Torus};
 use energywave::{Scene, reference};
 use fastrand::Rng;
 use glam::dcamera as camera;
@@ -140,6 +140,7 @@ fn picture(is_parallel: bool, sampling: Sampling) -> Scene {
         width: 130,
         height: 75,
     };
+    scene.integration.antialias = Antialias::None;
     scene.integration.method = Method::Exact {
         tolerance: 1e-3,
         sampling,

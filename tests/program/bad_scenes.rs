@@ -123,7 +123,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[depth]\nfile = \"d.exr\"\nalong = \"z\"\n",
         "6:9: depth.along",
-        "expected `ray` or `axis`",
+        "expected one of `ray`, `axis`, `ndc`, `buffer`",
     ),
     (
         "[depth]\nalong = \"axis\"\n",

@@ -9,10 +9,11 @@ mod bad_looks; // has every fault of layers named with its place
 mod bad_scenes;
 mod bad_series; // has every fault of a scene file named with its place
 mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
-#[cfg(unix)] // shells, signals and the loader's environment variables
 mod cameras; // reads matrices of engines, and refuses what is none
+#[cfg(unix)] // shells, signals and the loader's environment variables
 mod cli; // runs the program: exit codes, messages and outputs
 mod clip_depths; // reads depth files of engines
+mod compares; // maps errors, and reads measurements as data
 mod damaged; // changes bytes of images and scenes
 #[cfg(unix)] // as cli
 mod depths; // reads depth images of other programs
