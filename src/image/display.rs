@@ -1,9 +1,10 @@
-//! Linear radiance to an sRGB picture: background, exposure, tone mapping, alpha, sRGB encoding, dither.
+//! Linear radiance to an sRGB picture: bloom, background, exposure, tone mapping, alpha, sRGB encoding, dither.
 
 use serde::{Deserialize, Serialize};
 
+use super::bloom::Glow;
 use super::srgb::srgb_encode;
-use super::{Background, DisplayImage, Exposure, RadianceImage, ToneMap};
+use super::{Background, Bloom, DisplayImage, Exposure, RadianceImage, ToneMap};
 use crate::threads;
 
 /// How linear radiance becomes a picture. Structs may get further fields: write `..Display::default()`.
@@ -17,6 +18,8 @@ pub struct Display {
     pub alpha: Alpha,
     /// What is behind the light; a file then holds both, and is opaque.
     pub background: Option<Background>,
+    /// Light that is spread around what is bright; of the scene's light alone, not of a background's.
+    pub bloom: Option<Bloom>,
     /// Bits of a channel: 8 or 16 of a PNG, 16 or 32 (floats) of an EXR. `None`: 8, and 32 of an EXR.
     pub bits: Option<u32>,
     /// How well a JPEG is encoded, 1 to 100. `None`: 90.
@@ -50,12 +53,12 @@ impl RadianceImage {
         let has_alpha = display.has_alpha() && display.alpha == Alpha::Luminance;
         let (channels, bits) = (3 + usize::from(has_alpha), display.bits.unwrap_or(8));
         let bytes = usize::from(bits == 16) + 1;
-        let gain = self.gain(display);
+        let film = Film::new(self, display);
         let width = self.size.width as usize;
         let mut data = vec![0_u8; bytes * channels * self.size.pixels()];
         threads::for_each_chunk(&mut data, bytes * channels, |i, pixel| {
             let white = if bytes == 1 { 255.0 } else { 65535.0 };
-            let shown = self.shown(i, display, gain, white);
+            let shown = film.shown(i, white);
             match bytes {
                 1 => {
                     let threshold = gradient_noise(i % width, i / width);
@@ -78,19 +81,38 @@ impl RadianceImage {
             data,
         }
     }
+}
 
-    /// Returns linear RGBA before exposure and tone mapping as `display` has it: colour times alpha, over the
-    /// background if there is one.
+/// An image, and what a display makes of it.
+pub(super) struct Film<'a> {
+    image: &'a RadianceImage,
+    display: &'a Display,
+    gain: f32,
+    glow: Option<Glow>,
+}
+
+impl<'a> Film<'a> {
+    pub(super) fn new(image: &'a RadianceImage, display: &'a Display) -> Self {
+        let bloom = display.bloom.filter(|bloom| bloom.strength > 0.0);
+        Self {
+            image,
+            display,
+            gain: display.exposure.stops(image).exp2() as f32,
+            glow: bloom.map(|bloom| Glow::new(image, &bloom)),
+        }
+    }
+
+    /// Returns linear RGBA before exposure and tone mapping: colour times alpha, over the background if there is one.
     #[cfg(feature = "files")]
-    pub(super) fn film_pixel(&self, index: usize, display: &Display, gain: f32) -> [f32; 4] {
-        let (light, alpha) = (self.light(index), self.data[4 * index + 3]);
-        let hidden = match display.alpha {
-            Alpha::Luminance => most(display.tone_map.apply(light.map(|l| gain * l))),
+    pub(super) fn pixel(&self, index: usize) -> [f32; 4] {
+        let (light, alpha) = (self.light(index), self.image.data[4 * index + 3]);
+        let hidden = match self.display.alpha {
+            Alpha::Luminance => most(self.map(light)),
             Alpha::Opaque | Alpha::Additive => 0.0,
         };
-        let ([red, green, blue], alpha) = match (&display.background, display.alpha) {
+        let ([red, green, blue], alpha) = match (&self.display.background, self.display.alpha) {
             (Some(background), _) => (
-                over(light, hidden, background.linear(self.size, index)),
+                over(light, hidden, background.linear(self.image.size, index)),
                 1.0,
             ),
             (None, Alpha::Opaque) => (light, alpha),
@@ -99,32 +121,36 @@ impl RadianceImage {
         [red, green, blue, alpha]
     }
 
-    /// Returns what radiance is multiplied with.
-    pub(super) fn gain(&self, display: &Display) -> f32 {
-        display.exposure.stops(self).exp2() as f32
+    /// Exposes light and maps it to the screen.
+    fn map(&self, light: [f32; 3]) -> [f32; 3] {
+        self.display
+            .tone_map
+            .apply(light.map(|channel| self.gain * channel))
     }
 
     fn light(&self, index: usize) -> [f32; 3] {
-        [0, 1, 2].map(|channel| self.data[4 * index + channel])
+        match &self.glow {
+            Some(glow) => glow.light(self.image, index),
+            None => [0, 1, 2].map(|channel| self.image.data[4 * index + channel]),
+        }
     }
 
     /// Tone-maps a pixel, over its background: light before its exposure where that is light, too. What it hides is a
     /// whole number of steps, of which `white` make 1: so a picture is what a file without a background gives over it.
-    fn shown(&self, index: usize, display: &Display, gain: f32, white: f32) -> Shown {
-        let map = |light: [f32; 3]| display.tone_map.apply(light.map(|l| gain * l));
+    fn shown(&self, index: usize, white: f32) -> Shown {
         let light = self.light(index);
-        let color = map(light);
-        let hidden = match display.alpha {
+        let color = self.map(light);
+        let hidden = match self.display.alpha {
             Alpha::Luminance => (white * most(color)).ceil() / white,
             Alpha::Opaque | Alpha::Additive => 0.0,
         };
-        match &display.background {
-            None if display.alpha == Alpha::Luminance => (color, hidden),
+        match &self.display.background {
+            None if self.display.alpha == Alpha::Luminance => (color, hidden),
             None => (color, 1.0),
             Some(background) => {
-                let behind = background.linear(self.size, index);
+                let behind = background.linear(self.image.size, index);
                 let color = match background.is_light() {
-                    true => map(over(light, hidden, behind)),
+                    true => self.map(over(light, hidden, behind)),
                     false => over(color, hidden, behind).map(|l| l.min(1.0)),
                 };
                 (color, 1.0)

@@ -6,6 +6,7 @@ use exr::prelude::{
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 
+use super::display::Film;
 use super::{Display, DisplayImage, RadianceImage};
 use crate::output::Sink;
 
@@ -23,11 +24,11 @@ pub(super) fn exr(
     writer: &mut dyn Sink,
 ) -> Result<(), Fault> {
     let size = image.size();
-    let gain = image.gain(display);
+    let film = Film::new(image, display);
     let extent = Vec2(size.width as usize, size.height as usize);
     let pixel = |place: Vec2<usize>| {
         let index = place.flat_index_for_size(extent);
-        image.film_pixel(index, display, gain)
+        film.pixel(index)
     };
     let attributes = attributes(notes);
     match display.bits {

@@ -1,6 +1,7 @@
 //! Images: depth, linear radiance, the picture made of it, what is behind it, files, and comparison.
 
 mod background;
+mod bloom;
 mod clip;
 mod compare;
 mod depth;
@@ -27,6 +28,7 @@ mod srgb;
 mod tone_map;
 
 pub use background::{Background, BackgroundImage};
+pub use bloom::Bloom;
 pub use clip::{ClipDepth, ClipRange};
 pub(crate) use clip::{axis_of, check_matrix, rows};
 pub use compare::{Difference, compare, relative_errors};

@@ -4,7 +4,7 @@ use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, SMALLEST, finite};
 use super::{BRIGHTEST, Brightness, CORE_FLOOR, List, Measure, Scene, SourceKind, SourcesStamp};
 use crate::error::{Result, SceneError};
-use crate::image::{Background, Display, Exposure, ImageSize};
+use crate::image::{Background, Bloom, Display, Exposure, ImageSize};
 
 type CheckedScene = std::result::Result<(), SceneError>;
 
@@ -181,6 +181,9 @@ fn check_display(display: &Display, size: ImageSize) -> Checked {
         let message = format!("{quality}; a quality lies between 1 and 100");
         return Err(Fault::new("quality", message));
     }
+    if let Some(bloom) = &display.bloom {
+        check_bloom(bloom)?;
+    }
     match &display.background {
         None => Ok(()),
         Some(Background::Color(color)) => {
@@ -202,4 +205,22 @@ fn check_display(display: &Display, size: ImageSize) -> Checked {
             Err(Fault::new("background", message))
         }
     }
+}
+
+fn check_bloom(bloom: &Bloom) -> Checked {
+    if !(0.0..=1.0).contains(&bloom.strength) {
+        let message = format!(
+            "{}; the share of light that is spread lies between 0 and 1",
+            bloom.strength
+        );
+        return Err(Fault::new("bloom.strength", message));
+    }
+    if !(1e-9..=1.0).contains(&bloom.radius) {
+        let message = format!(
+            "{}; it is a share of the image's height, above 0 and at most 1",
+            bloom.radius
+        );
+        return Err(Fault::new("bloom.radius", message));
+    }
+    Ok(())
 }

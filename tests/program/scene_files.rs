@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::common;
 use energywave::image::{
-    Alpha, Background, DepthAlong, DepthImage, Display, Exposure, ImageSize, ToneMap,
+    Alpha, Background, Bloom, DepthAlong, DepthImage, Display, Exposure, ImageSize, ToneMap,
 };
 use energywave::internals::KINDS;
 use energywave::scene::{
@@ -217,6 +217,7 @@ fn rich_scenes() -> Vec<Scene> {
             background: (index % 2 == 0).then_some(Background::Color([0.1, 0.0, 1.0])),
             bits: [None, Some(8), Some(16)][index % 3],
             quality: (index % 2 == 1).then_some(75),
+            bloom: (index % 3 == 1).then_some(Bloom::new(0.25)),
         };
         add_sources(&mut scene, random);
         scene.validate().unwrap();

@@ -10,7 +10,7 @@ use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::error::SceneError;
-use crate::image::{Alpha, Background, BackgroundImage, Display, Exposure, ToneMap};
+use crate::image::{Alpha, Background, BackgroundImage, Bloom, Display, Exposure, ToneMap};
 use crate::scene::Scene;
 use crate::scene::colors::read_color;
 
@@ -23,6 +23,8 @@ pub(super) struct DisplayTable {
     alpha: Alpha,
     #[serde(skip_serializing_if = "Option::is_none")]
     background: Option<BackgroundKey>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bloom: Option<Bloom>,
     #[serde(skip_serializing_if = "Option::is_none")]
     bits: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -42,8 +44,15 @@ keys! { pub(in crate::scene) DISPLAY_KEYS;
     alpha: Word(&["opaque", "additive", "luminance"]), NONE, Value("\"opaque\""),
         "what a picture that is laid over another hides";
     background: ColorOrFile, NONE, Otherwise("black"), "what the light is laid over; a .png or .exr";
+    bloom: Table("bloom"), NONE, Otherwise("none"), "light that is spread around what is bright";
     bits: Whole(8, 32), NONE, Otherwise("8; EXR 32"), "of a channel: PNG 8 or 16, EXR 16 or 32";
     quality: Whole(1, 100), NONE, Otherwise("90"), "of a JPEG";
+}
+
+// What is read of `bloom`, whose type knows no scene.
+keys! { pub(in crate::scene) BLOOM_KEYS;
+    strength: from_to(0.0, 1.0), NONE, Required, "which share of all light is spread";
+    radius: from_to(1e-9, 1.0), "picture heights", Value("0.05"), "the standard deviation of its widest part";
 }
 
 impl DisplayTable {
@@ -59,6 +68,7 @@ impl DisplayTable {
             tone_map: display.tone_map,
             alpha: display.alpha,
             background,
+            bloom: display.bloom,
             bits: display.bits,
             quality: display.quality,
         })
@@ -77,6 +87,7 @@ impl DisplayTable {
                 Some(BackgroundKey::Color(color)) => Some(Background::Color(*color)),
                 Some(BackgroundKey::File(_)) | None => None,
             },
+            bloom: self.bloom,
             bits: self.bits,
             quality: self.quality,
         }

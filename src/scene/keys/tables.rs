@@ -4,7 +4,7 @@ use super::Key;
 use super::words::*;
 use crate::image::ImageSize;
 use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
-use crate::scene::file::{DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS};
+use crate::scene::file::{BLOOM_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS};
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
 use crate::scene::kinds::for_each_kind;
@@ -188,6 +188,12 @@ pub fn tables() -> Vec<Table> {
     });
     tables.push(group);
     tables.extend([
+        Table::new(
+            "bloom",
+            Inside,
+            "Light of a picture that is spread around what is bright",
+            BLOOM_KEYS,
+        ),
         Table::new(
             "layers",
             ListInside,

@@ -98,8 +98,8 @@ fn scene(table: &Table, but: &str, line: &str) -> String {
                 _ => format!("[[{}.{name}]]", host.name),
             };
             format!(
-                "{camera}[[{}]]\n{}{header}\n{own}",
-                host.name,
+                "{camera}{}\n{}{header}\n{own}",
+                host.header(),
                 keys(host, "")
             )
         }
