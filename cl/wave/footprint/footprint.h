@@ -106,7 +106,7 @@ INLINE Footprint footprint_of(const View *const view, const Ray *const ray, cons
         return footprint;
     const CoreSeen seen = core_seen(view, ray, closest);
     const floatv softening2 = ray->softening2 + closest->thickness2 + falloff->radius2;
-    const floatv thickness2 = IS_BARE(profile) ? splat(falloff->radius2) : max(softening2, ray->floor2);
+    const floatv thickness2 = IS_BARE(profile) ? splat(falloff->radius2) : softening2;
     const floatv thickness = max(0.5f * twice_sqrt(max(thickness2, 1e-36f)) * seen.per_length, LEAST_THICKNESS);
     const float end = IS_INVERSE(profile) ? FOOTPRINT_END_OF_INVERSE : FOOTPRINT_END;
     const intv is_met = (closest->s > 0.0f) & (closest->s < ray->end);

@@ -34,8 +34,8 @@ typedef struct {
     floatv thickness; // b; of a Gaussian its standard deviation
 } Across;
 
-// The least thickness, pixels.
-#define LEAST_THICKNESS 1e-5f
+// So thick a core is at least, in pixels: the mean of 1/q^2 and 1/q^3 over a bare one is infinite.
+#define LEAST_THICKNESS 2e-3f
 
 // Smeared light looks as that of 1/q with so many standard deviations as its thickness: exp(-gamma / 2) sqrt(2).
 #define SMEARED_THICKNESS 1.0597f
