@@ -2,17 +2,20 @@
 
 use glam::DVec3;
 
-use super::{GAUSSIAN_END, Source, Tracer};
-use crate::scene::{Profile, Ray, Scene, ViewPlane};
+use super::{Source, Tracer};
+use crate::scene::{Ray, Scene, ViewPlane};
 
-/// Within so many pixels from a core, or from where light ends, a pixel is a mean.
+/// Within so many pixels from a core a pixel is a mean.
 const NEAR: f64 = 8.0;
 
 /// A square is cut as long as a core is nearer than so many of its sides.
 const CLEAR: f64 = 1.5;
 
 /// Cuts at most.
-const MOST_CUTS: u32 = 6;
+const MOST_CUTS: u32 = 7;
+
+/// So thick a core is at least, in pixels: the mean of 1/q^2 over a bare one is infinite.
+const LEAST_THICKNESS: f64 = 1.0 / 64.0;
 
 /// Half the side of a square times this is where each of its four rays passes (Gauss, Legendre).
 const GAUSS: f64 = 0.577_350_269_189_625_8;
@@ -23,6 +26,8 @@ pub(super) struct PixelView<'a> {
     scene: &'a Scene,
     plane: &'a ViewPlane,
     index: usize,
+    /// How thick cores are at least, world units.
+    thickness: f64,
 }
 
 impl Tracer {
@@ -32,12 +37,17 @@ impl Tracer {
         plane: &'a ViewPlane,
         index: usize,
     ) -> PixelView<'a> {
-        PixelView {
+        let mut view = PixelView {
             tracer: self,
             scene,
             plane,
             index,
+            thickness: 0.0,
+        };
+        if self.integration.has_footprints() {
+            view.thickness = LEAST_THICKNESS * view.clearance(view.center()).1;
         }
+        view
     }
 }
 
@@ -47,13 +57,13 @@ impl PixelView<'_> {
         let center = self.center();
         match self.is_mean() {
             true => self.mean_over(center, 1.0, 0),
-            false => self.through(center),
+            false => self.through(center, false),
         }
     }
 
     pub(super) fn is_mean(&self) -> bool {
         let has_footprints = self.tracer.integration.has_footprints();
-        has_footprints && self.clearance(self.center(), true) < NEAR
+        has_footprints && self.clearance(self.center()).0 < NEAR
     }
 
     /// Returns column and row.
@@ -63,35 +73,40 @@ impl PixelView<'_> {
     }
 
     fn mean_over(&self, (column, row): (f64, f64), side: f64, cuts: u32) -> DVec3 {
-        let is_clear = self.clearance((column, row), false) > CLEAR * side;
+        let is_clear = self.clearance((column, row)).0 > CLEAR * side;
         let is_whole = is_clear || cuts == MOST_CUTS;
         let step = side * if is_whole { 0.5 * GAUSS } else { 0.25 };
         let parts = [(-step, -step), (step, -step), (-step, step), (step, step)];
         let parts = parts.map(|(right, below)| (column + right, row + below));
         let lights = parts.map(|part| match is_whole {
-            true => self.through(part),
+            true => self.through(part, true),
             false => self.mean_over(part, 0.5 * side, cuts + 1),
         });
         0.25 * lights.into_iter().sum::<DVec3>()
     }
 
-    /// Returns the light along the ray through a place, which ends where the pixel's does.
-    fn through(&self, (column, row): (f64, f64)) -> DVec3 {
+    /// Returns the light along the ray through a place, which ends where the pixel's does; of those that a mean is made
+    /// of if `is_part`.
+    fn through(&self, (column, row): (f64, f64), is_part: bool) -> DVec3 {
         let ray = self.plane.ray_at(column, row);
         let end = self.scene.depth.as_ref().map_or(1.0, |depth| {
             let depth_here = depth.as_slice()[self.index];
             self.plane.end(&ray, depth_here, depth.along())
         });
-        self.tracer.radiance(&ray, end, self.index as u32)
+        let mut integrand = self.tracer.integrand;
+        if is_part {
+            integrand.softening = integrand.softening.max(self.thickness);
+        }
+        let number = self.index as u32;
+        self.tracer.radiance_of(&integrand, &ray, end, number)
     }
 
-    /// Returns how many pixels the ray through a place passes the nearest core, or where light ends if `with_ends`; a
-    /// core's thickness keeps it away.
-    fn clearance(&self, (column, row): (f64, f64), with_ends: bool) -> f64 {
+    /// Returns how many pixels the ray through a place passes the nearest core, whose thickness keeps it away; and the side of a pixel there, world units.
+    fn clearance(&self, (column, row): (f64, f64)) -> (f64, f64) {
         let ray = self.plane.ray_at(column, row);
         let to_plane = ray.origin.distance(self.plane.eye);
         let pixel = self.plane.column_step.length();
-        let mut least = f64::INFINITY;
+        let mut least = (f64::INFINITY, 0.0);
         let mut places = Vec::new();
         for source in &self.tracer.sources {
             places.clear();
@@ -103,25 +118,19 @@ impl PixelView<'_> {
                     false => (to_plane + s * self.plane.ray_length) / to_plane,
                 };
                 let pixel_there = pixel * growth;
-                least = least.min(self.to_core(source, &ray, s, with_ends) / pixel_there);
+                let pixels = self.to_core(source, &ray, s) / pixel_there;
+                if pixels < least.0 {
+                    least = (pixels, pixel_there);
+                }
             }
         }
         least
     }
 
-    /// Returns how far a point of a ray is from a core, or from where its light ends, world units.
-    fn to_core(&self, source: &Source, ray: &Ray, s: f64, with_ends: bool) -> f64 {
-        let falloff = source.falloff;
+    /// Returns how far a point of a ray is from a core, world units.
+    fn to_core(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
         let distance = source.field.sample(ray.at(s)).distance2.sqrt();
-        let thickness = falloff.radius.hypot(self.tracer.integrand.softening);
-        let width = (falloff.profile == Profile::Gaussian).then_some(GAUSSIAN_END * falloff.radius);
-        let to_end = |end: f64| (distance - end).abs();
-        let ends = [falloff.reach, width].into_iter().flatten();
-        let nearest_end = ends.map(to_end).fold(f64::INFINITY, f64::min);
-        let to_core = distance.hypot(thickness);
-        match with_ends {
-            true => to_core.min(nearest_end),
-            false => to_core,
-        }
+        let softening = self.tracer.integrand.softening.max(self.thickness);
+        distance.hypot(source.falloff.radius.hypot(softening))
     }
 }

@@ -272,19 +272,29 @@ impl Tracer {
 
     /// Returns the linear RGB along a ray, over s in `[0,end]`; `number` is that of its pixel, or in its list.
     pub(crate) fn radiance(&self, ray: &Ray, end: f64, number: u32) -> DVec3 {
+        self.radiance_of(&self.integrand, ray, end, number)
+    }
+
+    fn radiance_of(&self, integrand: &Integrand, ray: &Ray, end: f64, number: u32) -> DVec3 {
         // Parts of a light add up before its root is taken.
         let parts = match self.integration.reduction {
             Reduction::Sum => 1,
             Reduction::Rms => self.sources.len().max(1),
         };
         let lights = self.sources.chunks(parts);
-        let light = lights.map(|parts| self.light(parts, ray, end, number));
+        let light = lights.map(|parts| self.light(parts, integrand, ray, end, number));
         light.sum::<DVec3>() * self.integration.scale(ray.span.length())
     }
 
     /// Returns the light of parts of one emission, over s.
-    fn light(&self, parts: &[Source], ray: &Ray, end: f64, number: u32) -> DVec3 {
-        let integrand = &self.integrand;
+    fn light(
+        &self,
+        parts: &[Source],
+        integrand: &Integrand,
+        ray: &Ray,
+        end: f64,
+        number: u32,
+    ) -> DVec3 {
         let reduction = self.integration.reduction;
         let at = |s: f64| {
             let fields = parts.iter().map(|part| integrand.field(part, ray, s));

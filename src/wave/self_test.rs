@@ -25,7 +25,7 @@ const STRIDE: usize = 97;
 /// The relative error that a pixel may have even if the tolerance is smaller: what float32 and half floats lose.
 const LEAST_LIMIT: f64 = 1e-3;
 
-/// That of a pixel next to a core, which is a mean over its square: few pixels see much of a specimen, its ends and bends.
+/// That of a pixel next to a core, a mean over its square: few pixels see much of a specimen, its ends and bends.
 const MEAN_LIMIT: f64 = 1e-1;
 
 /// Two tiles wide and high, with room for some that are smooth.
@@ -147,6 +147,9 @@ fn known_scenes(task: Task) -> Result<[Scene; 2]> {
     near.decay = Some(Decay::new(0.1, 0.1));
     let mut far = Scene::new(Camera::new(DVec3::new(-1.0, -9.0, 4.0), DVec3::ZERO));
     far.integration.softening = 0.05;
+    if task.has_footprints {
+        near.integration.softening = 0.03; // ends of thinner cores are neither lines nor points
+    }
     if let Some(power) = task.fading {
         let decay = Decay {
             power,

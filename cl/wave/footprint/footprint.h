@@ -8,7 +8,7 @@
 #include "closest.h"
 #include "mean.h"
 
-// So many pixels from a core, or from where light ends, the ray through the centre gets the mean.
+// So many pixels from a core, the ray through the centre gets the mean.
 #define FOOTPRINT_END 6.0f
 #define FOOTPRINT_END_OF_INVERSE 1.5f
 // So thick a core, in pixels, does not vary over one.
@@ -16,8 +16,6 @@
 // No ray passes a core closer than this; by so much farther off does the second ray.
 #define LEAST_PASS 0.4f
 #define SECOND_PASS 0.5f
-// Nor does one pass closer to where light ends.
-#define LEAST_INSIDE 1.0f
 
 // Rays beside the one through the centre, by pixels to the right and below, and what the integral of each counts.
 #define FOOTPRINT_RAYS 2
@@ -87,17 +85,6 @@ INLINE void take_core(Footprint *const footprint, const CoreSeen *const seen, co
     footprint->weight[0] = select(footprint->weight[0], weight, is_near);
 }
 
-#ifdef SHAPES
-// Takes the mean of what lies so many pixels within the end of light.
-INLINE void take_end(Footprint *const footprint, const CoreSeen *const seen, const floatv inside, const intv is_near) {
-    const Across light = {ACROSS_END, splat(0.0f)};
-    const floatv pass = max(inside, LEAST_INSIDE);
-    const floatv mean = mean_beside_line(&light, inside, seen->right, seen->below);
-    put_ray(footprint, 0, seen, fabs(seen->offset) + (inside - pass), is_near);
-    footprint->weight[0] = select(footprint->weight[0], mean * inverse(light_across(&light, pass)), is_near);
-}
-#endif
-
 INLINE Footprint footprint_of(const View *const view, const Ray *const ray, const Closest *const closest,
                               __global const Falloff *const falloff) {
     Footprint footprint = {1, true, {splat(0.0f), splat(0.0f)}, {splat(0.0f), splat(0.0f)}, {splat(1.0f), splat(0.0f)}};
@@ -110,21 +97,13 @@ INLINE Footprint footprint_of(const View *const view, const Ray *const ray, cons
     const floatv thickness = max(0.5f * twice_sqrt(max(thickness2, 1e-36f)) * seen.per_length, LEAST_THICKNESS);
     const float end = IS_INVERSE(profile) ? FOOTPRINT_END_OF_INVERSE : FOOTPRINT_END;
     const intv is_met = (closest->s > 0.0f) & (closest->s < ray->end);
-    const intv is_near = is_met & (fabs(seen.offset) < end) & (thickness < FOOTPRINT_THICK);
+    // Not the offset: where a ray runs along a core, the core may be far ahead.
+    const floatv apart2 = dot3(closest->beside, closest->beside) * seen.per_length * seen.per_length;
+    const intv is_near = is_met & (apart2 < end * end) & (thickness < FOOTPRINT_THICK);
     if (any_lane(is_near)) {
         const Across light = {profile, profile == 4u ? SMEARED_THICKNESS * thickness : thickness};
         take_core(&footprint, &seen, &light, is_near);
         footprint.is_center = false;
     }
-#ifdef SHAPES
-    if (falloff->reach2 > 0.0f) {
-        const floatv inside = sqrt(falloff->reach2) * seen.per_length - fabs(seen.offset);
-        const intv is_at_end = is_met & !is_near & (inside > -1.0f) & (inside < FOOTPRINT_END);
-        if (any_lane(is_at_end)) {
-            take_end(&footprint, &seen, inside, is_at_end);
-            footprint.is_center = false;
-        }
-    }
-#endif
     return footprint;
 }

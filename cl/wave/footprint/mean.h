@@ -35,13 +35,10 @@ typedef struct {
 } Across;
 
 // So thick a core is at least, in pixels: the mean of 1/q^2 and 1/q^3 over a bare one is infinite.
-#define LEAST_THICKNESS 2e-3f
+#define LEAST_THICKNESS 0.015625f
 
 // Smeared light looks as that of 1/q with so many standard deviations as its thickness: exp(-gamma / 2) sqrt(2).
 #define SMEARED_THICKNESS 1.0597f
-
-// Of light that ends at a reach, by the distance from where it ends: a window squared over a chord.
-#define ACROSS_END 6u
 
 #ifdef SHAPES
 #define IS_GAUSSIAN(across) ((across)->profile == 3u)
@@ -65,12 +62,6 @@ INLINE floatv light_across(const Across *const across, const floatv distance) {
         return 0.5f * twice_inverse_sqrt_(r2);
     case 2:
         return inverse(r2);
-#ifdef SHAPES
-    case ACROSS_END: {
-        const floatv inside = max(distance, 0.0f);
-        return inside * inside * sqrt(inside);
-    }
-#endif
     default:
         return -0.5f * natural_logarithm(r2);
     }
@@ -91,12 +82,6 @@ INLINE floatv second_integral_across(const Across *const across, const floatv di
         return fma(x, natural_logarithm((x + r) * inverse(b)), -r);
     case 2:
         return fma(x * inverse(b), arctangent_of(x, b), -0.5f * natural_logarithm(r2));
-#ifdef SHAPES
-    case ACROSS_END: {
-        const floatv inside = max(distance, 0.0f), inside2 = inside * inside;
-        return (1.0f / 15.75f) * inside2 * inside2 * sqrt(inside);
-    }
-#endif
     default:
         return -fma(0.25f * (x * x - b * b), natural_logarithm(r2), -0.25f * fma(x, 3.0f * x, b * b)) -
                b * x * arctangent_of(x, b);
