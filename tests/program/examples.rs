@@ -97,11 +97,11 @@ fn host_opencl_draws_into_its_own_image() {
         .unwrap()
         .into_rgb8();
     assert_eq!(picture.dimensions(), (320, 240));
-    // The last ring: orange, and darker in its middle than on it.
+    // The last ring: orange, paled by the tone map where it is hot, and darker in its middle than on it.
     let [red, _, blue] = picture.get_pixel(160, 155).0;
     let [middle, ..] = picture.get_pixel(160, 120).0;
     assert!(
-        red > 150 && u32::from(red) * 2 > u32::from(blue) * 3,
+        red > 150 && u32::from(red) > u32::from(blue) + 30,
         "{red} {blue}"
     );
     assert!(middle < red / 2, "{middle} {red}");
