@@ -101,7 +101,8 @@ impl PixelView<'_> {
         self.tracer.radiance_of(&integrand, &ray, end, number)
     }
 
-    /// Returns how many pixels the ray through a place passes the nearest core, whose thickness keeps it away; and the side of a pixel there, world units.
+    /// Returns how many pixels the ray through a place passes the nearest core, whose thickness
+    /// keeps it away; and the side of a pixel there, world units.
     fn clearance(&self, (column, row): (f64, f64)) -> (f64, f64) {
         let ray = self.plane.ray_at(column, row);
         let to_plane = ray.origin.distance(self.plane.eye);
