@@ -2,6 +2,7 @@
 
 mod device;
 mod host;
+mod layers;
 mod one;
 mod several;
 mod shares;
@@ -16,7 +17,7 @@ use crate::error::{Error, Result, SceneError};
 use crate::image::{RadianceImage, kept_image};
 use crate::opencl::{MappedFilm, RendererOptions};
 use crate::reference::{self, Tracer};
-use crate::scene::{CheckedSources, Ray, Scene};
+use crate::scene::{CheckedSources, DepthLayers, Ray, Scene};
 use device::Backend;
 use one::{DeviceRenderer, Rows};
 use several::SeveralRenderer;
@@ -49,6 +50,12 @@ pub struct Renderer {
     backend: RendererBackend,
     /// The sources that were checked last.
     checked: Option<CheckedSources>,
+    /// The depths, finer than pixels, that were taken apart last.
+    layers: Option<DepthLayers>,
+    /// What parts of the last frame cost that were drawn before its last part.
+    cost_before: FrameCost,
+    /// An image that is put together of parts, and lent.
+    kept: Option<RadianceImage>,
 }
 
 #[derive(Debug)]
@@ -113,6 +120,9 @@ impl Renderer {
         Self {
             backend,
             checked: None,
+            layers: None,
+            cost_before: FrameCost::default(),
+            kept: None,
         }
     }
 
@@ -151,12 +161,7 @@ impl Renderer {
             RendererBackend::Several(_) | RendererBackend::Reference { .. } => 0,
         };
         let mut image = RadianceImage::beside(scene.image, beside)?;
-        let all = Rows {
-            rows: 0..scene.image.height,
-            target: image.as_mut_slice(),
-            stride: 4 * scene.image.width as usize,
-        };
-        self.draw(scene, all, progress)?;
+        self.draw(scene, whole(scene, image.as_mut_slice()), progress)?;
         Ok(image)
     }
 
@@ -175,12 +180,9 @@ impl Renderer {
                 scene.image.height
             )));
         }
-        let all = Rows {
-            rows: 0..scene.image.height,
-            target,
-            stride: 4 * scene.image.width as usize,
-        };
-        self.draw(scene, all, &mut |_| ControlFlow::Continue(()))
+        self.draw(scene, whole(scene, target), &mut |_| {
+            ControlFlow::Continue(())
+        })
     }
 
     /// Renders some rows of the scene's image into the caller's memory, such as a part of a larger image: linear RGBA
@@ -237,6 +239,10 @@ impl Renderer {
     /// As [`Renderer::render`], and [`Error::OutOfMemory`] if the image is larger than one buffer of the device.
     pub fn render_mapped(&mut self, scene: &Scene) -> Result<MappedImage<'_>> {
         self.check(scene)?;
+        if self.has_layers(scene)? {
+            let values = self.keep_layers(scene)?;
+            return Ok(MappedImage(MappedBackend::Host(values)));
+        }
         match &mut self.backend {
             RendererBackend::OpenCl(renderer) => {
                 let mapped = renderer.render_mapped(scene)?;
@@ -261,6 +267,10 @@ impl Renderer {
     /// Returns what the last frame cost.
     #[must_use]
     pub fn last_cost(&self) -> FrameCost {
+        self.cost_before.then(self.cost_of_part())
+    }
+
+    fn cost_of_part(&self) -> FrameCost {
         match &self.backend {
             RendererBackend::OpenCl(renderer) => renderer.cost(),
             RendererBackend::Several(renderer) => renderer.cost(),
@@ -300,10 +310,23 @@ impl Renderer {
 
     /// Checks a scene; its sources only if they changed.
     fn check(&mut self, scene: &Scene) -> Result<()> {
+        self.cost_before = FrameCost::default();
         scene.validate_again(&mut self.checked)
     }
 
     fn draw(
+        &mut self,
+        scene: &Scene,
+        wanted: Rows<'_>,
+        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<()> {
+        match self.has_layers(scene)? {
+            true => self.draw_layers(scene, wanted, progress),
+            false => self.draw_part(scene, wanted, progress),
+        }
+    }
+
+    fn draw_part(
         &mut self,
         scene: &Scene,
         wanted: Rows<'_>,
@@ -331,6 +354,15 @@ impl Renderer {
             RendererBackend::OpenCl(renderer) => Some(renderer.wave()),
             RendererBackend::Several(_) | RendererBackend::Reference { .. } => None,
         }
+    }
+}
+
+/// Returns all rows of a scene's image.
+fn whole<'a>(scene: &Scene, target: &'a mut [f32]) -> Rows<'a> {
+    Rows {
+        rows: 0..scene.image.height,
+        target,
+        stride: 4 * scene.image.width as usize,
     }
 }
 
