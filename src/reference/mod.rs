@@ -220,8 +220,8 @@ fn render_image(scene: &Scene, method: Method) -> Result<RadianceImage> {
     Ok(image)
 }
 
-/// Renders some rows of a validated scene, whose depths are as many as its pixels, into `target`, RGBA by rows, in bands
-/// between which `progress` may stop the work.
+/// Renders some rows of a validated scene, whose depths are as many as its pixels, into `target`, RGBA by rows, in
+/// bands between which `progress` may stop the work.
 pub(crate) fn render_rows(
     scene: &Scene,
     method: Method,
