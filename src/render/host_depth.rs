@@ -11,11 +11,12 @@ use crate::scene::Scene;
 /// [`Renderer::enqueue_behind`](crate::Renderer::enqueue_behind): nothing of them is read back. They take the place of
 /// [`Scene::depth`](crate::Scene), which the scene then has not. `examples/host_opencl.rs` draws behind a depth buffer.
 ///
-/// They give the picture that the same values give as a [`DepthImage`](crate::image::DepthImage): to the bit on devices
-/// that have float64 (`cl_khr_fp64`), else those of clip space differ by a few units of float32's last place. 0 hides
-/// all of a ray, and an infinite value nothing. What a `DepthImage` refuses cannot be told of without reading it back:
-/// where a value is no number, a negative length, or more than 1e-4 beyond the planes of the projection, nothing hides
-/// the light.
+/// They give the picture that the same values give as a [`DepthImage`](crate::image::DepthImage): to the bit where the
+/// device has float64 (`cl_khr_fp64`), else those of clip space differ by a few units of float32's last place.
+///
+/// A length of 0 hides all of a ray, and an infinite value nothing. What a `DepthImage` refuses cannot be told of
+/// without reading it back: where a value is no number, a negative length, or more than 1e-4 beyond the planes of the
+/// projection, nothing hides the light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct HostDepth {
