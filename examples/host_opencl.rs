@@ -3,15 +3,15 @@
 //!
 //! `cargo run --release --example host_opencl -- FOLDER`
 //!
-//! At the end: the same for a texture of OpenGL and for an image of Vulkan.
+//! At the end: behind a depth buffer; the same for a texture of OpenGL and for an image of Vulkan.
 #![allow(unsafe_code)] // hosts call OpenCL
 
 use std::path::PathBuf;
 use std::{error, ptr};
 
-use energywave::image::ImageSize;
+use energywave::image::{DepthAlong, ImageSize};
 use energywave::scene::{Camera, Torus};
-use energywave::{HostTarget, RadianceImage, Renderer, Scene};
+use energywave::{HostDepth, HostTarget, RadianceImage, Renderer, Scene};
 use glam::DVec3;
 use opencl3::command_queue::CommandQueue;
 use opencl3::context::Context;
@@ -102,6 +102,24 @@ fn read(
     // SAFETY: the values are as many as the image's, and the call blocks.
     unsafe { queue.enqueue_read_image(image, CL_TRUE, origin, region, 0, 0, values, &[]) }?;
     Ok(())
+}
+
+/// Draws behind what an engine has drawn: its depth buffer is an image of `CL_R` or `CL_DEPTH`, which came to OpenCL as
+/// the textures below do, the lowest row first. The scene's camera has the engine's matrices.
+///
+/// # Safety
+/// Both images are alive. Nothing writes the depths, and nothing uses the target, until the returned event is over.
+pub unsafe fn draw_behind_depth_buffer(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    depth_buffer: &Image,
+    target: &Image,
+) -> Result<Event, Box<dyn error::Error>> {
+    let matrices = scene.camera.matrices.ok_or("a camera without matrices")?;
+    let mut depth = HostDepth::from_clip(depth_buffer, DepthAlong::Buffer, &matrices.clip_depth()?);
+    depth.is_bottom_up = true; // as OpenGL draws
+    // SAFETY: the caller's promise.
+    Ok(unsafe { renderer.enqueue_behind(scene, target.into(), &depth, &[]) }?)
 }
 
 /// Draws into a texture of OpenGL. The host makes its context for the GL context's device, with the properties

@@ -89,7 +89,7 @@ pub enum Error {
     #[error("the host's {object}: {reason}")]
     #[non_exhaustive]
     Host {
-        /// What: context, queue, buffer, image or wait list.
+        /// What: context, queue, buffer, image, depth or wait list.
         object: &'static str,
         /// Why, and what would fit.
         reason: String,

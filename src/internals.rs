@@ -8,7 +8,8 @@ use std::time::Duration;
 
 pub use crate::opencl::{
     Argument, Compute, DeviceBuffer, DeviceStruct, Discovery, Film, FilmFormat, FilmPart, Kernel,
-    OpenClDevice, Pixel, Program, SHARED, Sources, StructLayout, Uploaded, discover,
+    OpenClDevice, Pixel, Program, SHARED, Sources, StoredDepths, StructLayout, Uploaded, discover,
+    host_depth_definitions,
 };
 pub use crate::reference::{
     CurveField, Field, Integrand, Sample, Source, b_spline, exact, integrate, simpson, sources,

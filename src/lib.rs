@@ -76,12 +76,12 @@ pub use nearest::nearest;
 #[cfg(feature = "kernel-cache")]
 pub use opencl::KernelCache;
 pub use opencl::{
-    DeviceForm, DeviceType, HostTarget, RendererOptions, SlowStart, keep_pocl_threads_apart,
-    suit_pocl,
+    DeviceForm, DeviceType, HostDepthMemory, HostTarget, RendererOptions, SlowStart,
+    keep_pocl_threads_apart, suit_pocl,
 };
 pub use opencl3; // whose handles hosts give
 #[cfg(feature = "files")]
 pub use output::TextFile;
-pub use render::{Device, Devices, MappedImage, Renderer};
+pub use render::{Device, Devices, HostDepth, MappedImage, Renderer};
 pub use scene::{Ray, Scene};
 pub use shown::{shown, shown_lines};

@@ -169,6 +169,11 @@ impl ClipDepth {
         self.projection
     }
 
+    /// Returns a and b: the depth is `a + b / d` (perspective) or `a + b d`, d the distance.
+    pub(crate) fn terms(&self) -> (f64, f64) {
+        (self.a, self.b)
+    }
+
     /// Returns the range of the depths.
     #[must_use]
     pub fn range(&self) -> ClipRange {

@@ -61,7 +61,7 @@ pub(crate) fn unfit(object: &'static str, reason: impl Display) -> Error {
 }
 
 /// Turns the answer to a question about something of the host's into a result.
-fn asked<T>(object: &'static str, answer: std::result::Result<T, ClError>) -> Result<T> {
+pub(super) fn asked<T>(object: &'static str, answer: std::result::Result<T, ClError>) -> Result<T> {
     answer.map_err(|ClError(code)| {
         let code = super::failure::code_name(code);
         unfit(object, format_args!("OpenCL does not know it ({code})"))
@@ -283,6 +283,30 @@ unsafe fn checked(
         HostTarget::Buffer(buffer) => ("buffer", buffer, CL_MEM_OBJECT_BUFFER),
         HostTarget::Image(image) => ("image", image, CL_MEM_OBJECT_IMAGE2D),
     };
+    // SAFETY: the caller's promise.
+    let memory = unsafe { retained(compute, object, handle, wanted) }?;
+    let flags = asked(object, memory.flags())?;
+    if flags & CL_MEM_READ_ONLY != 0 {
+        let reason = "kernels may not write it (CL_MEM_READ_ONLY); use CL_MEM_READ_WRITE";
+        return Err(unfit(object, reason));
+    }
+    let has_halves = match target {
+        HostTarget::Buffer(_) => check_buffer(&memory, flags, size).map(|()| false),
+        HostTarget::Image(_) => check_image(&memory, size),
+    }?;
+    Ok((memory, has_halves))
+}
+
+/// Returns a host's memory object, retained, if it is of the kind that is wanted and belongs to the context.
+///
+/// # Safety
+/// The memory object is alive.
+pub(super) unsafe fn retained(
+    compute: &Compute,
+    object: &'static str,
+    handle: cl_mem,
+    wanted: u32,
+) -> Result<Handle<Image>> {
     if handle.is_null() {
         return Err(unfit(object, "null"));
     }
@@ -298,16 +322,7 @@ unsafe fn checked(
     if asked(object, memory.context())? != compute.context.get() {
         return Err(unfit(object, "it belongs to another context"));
     }
-    let flags = asked(object, memory.flags())?;
-    if flags & CL_MEM_READ_ONLY != 0 {
-        let reason = "kernels may not write it (CL_MEM_READ_ONLY); use CL_MEM_READ_WRITE";
-        return Err(unfit(object, reason));
-    }
-    let has_halves = match target {
-        HostTarget::Buffer(_) => check_buffer(&memory, flags, size).map(|()| false),
-        HostTarget::Image(_) => check_image(&memory, size),
-    }?;
-    Ok((memory, has_halves))
+    Ok(memory)
 }
 
 /// # Safety

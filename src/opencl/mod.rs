@@ -17,7 +17,9 @@ mod film_memory;
 mod half;
 mod handle;
 mod host;
+mod host_depth;
 mod host_image;
+mod host_lengths;
 mod image;
 mod kernel;
 #[cfg(feature = "kernel-cache")]
@@ -45,8 +47,12 @@ pub(crate) use film_memory::MappedFilm;
 pub(crate) use handle::Handle;
 pub use host::HostTarget;
 pub(crate) use host::{HostLink, unfit};
+pub(crate) use host_depth::HeldDepths;
+pub use host_depth::HostDepthMemory;
+pub(crate) use host_lengths::{ClipValues, DepthValues, HostDepths};
+pub use host_lengths::{StoredDepths, definitions as host_depth_definitions};
 pub use kernel::{Argument, Kernel};
-pub(crate) use kernel::{by_value, halved, run_time, set_value};
+pub(crate) use kernel::{RawMemory, by_value, halved, run_time, set_value};
 #[cfg(feature = "kernel-cache")]
 pub use key::ProgramKey;
 pub(crate) use layout::device_struct;

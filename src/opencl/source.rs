@@ -22,6 +22,7 @@ pub const SHARED: &[SourceFile<'static>] = embed!(
     "random.h",
     "view.h",
     "film.h",
+    "depth.cl",
 );
 
 /// The files that a program may include, and what its templates are made for.

@@ -11,9 +11,9 @@ use opencl3::event::Event;
 use opencl3::types::{cl_command_queue, cl_context, cl_event};
 
 use super::one::{DeviceRenderer, no_host};
-use super::{Renderer, RendererBackend};
+use super::{HostDepth, Renderer, RendererBackend};
 use crate::error::Result;
-use crate::opencl::{HostLink, HostTarget, RendererOptions};
+use crate::opencl::{HostLink, HostTarget, RendererOptions, unfit};
 use crate::scene::Scene;
 
 impl Renderer {
@@ -69,11 +69,54 @@ impl Renderer {
         target: HostTarget,
         wait_list: &[cl_event],
     ) -> Result<Event> {
+        // SAFETY: the caller's promise.
+        unsafe { self.enqueue_frame(scene, target, None, wait_list) }
+    }
+
+    /// Enqueues a frame as [`Renderer::enqueue`] does, whose rays end at depths in the host's own memory. They are read
+    /// on the device, anew for every frame, after `wait_list` and what is on the host's queue before the frame.
+    ///
+    /// # Safety
+    /// As [`Renderer::enqueue`]; the depths' memory is a valid handle, too, which the caller holds a reference to, and
+    /// until the event is over nothing writes there.
+    ///
+    /// # Errors
+    /// As [`Renderer::enqueue`]; [`Error::Host`](crate::Error::Host) also if the depths do not fit: another size,
+    /// format or context, memory that kernels may not read or that is the target, a scene with depths of its own.
+    pub unsafe fn enqueue_behind(
+        &mut self,
+        scene: &Scene,
+        target: HostTarget,
+        depth: &HostDepth,
+        wait_list: &[cl_event],
+    ) -> Result<Event> {
+        // SAFETY: the caller's promise.
+        unsafe { self.enqueue_frame(scene, target, Some(depth), wait_list) }
+    }
+
+    /// # Safety
+    /// As [`Renderer::enqueue_behind`].
+    unsafe fn enqueue_frame(
+        &mut self,
+        scene: &Scene,
+        target: HostTarget,
+        depth: Option<&HostDepth>,
+        wait_list: &[cl_event],
+    ) -> Result<Event> {
         self.check(scene)?;
+        if scene
+            .depth
+            .as_ref()
+            .is_some_and(|it| it.size() != scene.image)
+        {
+            let reason =
+                "the scene's are finer than its pixels; a host's memory takes one for each pixel";
+            return Err(unfit("depth", reason));
+        }
         match &mut self.backend {
             // SAFETY: the caller's promise.
             RendererBackend::OpenCl(renderer) => unsafe {
-                renderer.enqueue(scene, target, wait_list)
+                renderer.enqueue(scene, target, depth, wait_list)
             },
             RendererBackend::Several(_) | RendererBackend::Reference { .. } => Err(no_host()),
         }

@@ -2,6 +2,7 @@
 
 mod device;
 mod host;
+mod host_depth;
 mod layers;
 mod one;
 mod several;
@@ -11,6 +12,7 @@ use std::ops::{ControlFlow, Deref, Range};
 use std::time::{Duration, Instant};
 
 pub use device::{Device, Devices};
+pub use host_depth::HostDepth;
 
 use crate::cost::FrameCost;
 use crate::error::{Error, Result, SceneError};

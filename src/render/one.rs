@@ -6,13 +6,15 @@ use std::time::{Duration, Instant};
 use opencl3::event::Event;
 use opencl3::types::cl_event;
 
+use super::host_depth::{self, HostDepth};
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
 use crate::opencl::{
-    Compute, Film, HostLink, HostTarget, MappedFilm, OpenClDevice, Pixel, RendererOptions, unfit,
+    Compute, Film, HeldDepths, HostDepths, HostLink, HostTarget, MappedFilm, OpenClDevice, Pixel,
+    RendererOptions, unfit,
 };
 use crate::scene::{Ray, Scene};
-use crate::wave::{Plan, Wave};
+use crate::wave::{DeviceDepths, Plan, Wave};
 
 /// A device with its engines and its film, which are kept from frame to frame.
 #[derive(Debug)]
@@ -22,6 +24,7 @@ pub(crate) struct DeviceRenderer {
     film: Film,
     /// The host whose frames are enqueued, if there is one.
     host: Option<HostLink>,
+    host_depths: HostDepths,
     /// Whether the device itself writes the caller's memory where it can; else what it wrote is copied there.
     pub(crate) writes_in_place: bool,
     compute: Compute,
@@ -60,6 +63,7 @@ impl DeviceRenderer {
             wave: Wave::new(&compute, options)?,
             film: Film::new(),
             host,
+            host_depths: HostDepths::new(options),
             writes_in_place: false,
             compute,
         })
@@ -223,27 +227,49 @@ impl DeviceRenderer {
     /// Enqueues a frame of a valid scene for the host. Nothing here waits.
     ///
     /// # Safety
-    /// As [`crate::Renderer::enqueue`].
+    /// As [`crate::Renderer::enqueue_behind`].
     #[allow(unsafe_code)] // the caller's promise is handed on
     pub(crate) unsafe fn enqueue(
         &mut self,
         scene: &Scene,
         target: HostTarget,
+        depth: Option<&HostDepth>,
         wait_list: &[cl_event],
     ) -> Result<Event> {
         let Self {
             wave,
             film,
             host,
+            host_depths,
             compute,
             ..
         } = self;
         let host = host.as_mut().ok_or_else(no_host)?;
         let size = (scene.image.width, scene.image.height);
+        let depth = match depth {
+            Some(depth) => {
+                let values = depth.values(scene)?;
+                // SAFETY: the caller's promise.
+                let held = unsafe { HeldDepths::take(compute, depth.memory, target, size) }?;
+                Some((held, values, depth.lengths_along()))
+            }
+            None => None,
+        };
         // SAFETY: the caller's promise.
         let mut frame = unsafe { host.begin(compute, film, target, size, wait_list) }?;
         let mut draw = |film: &mut Film| {
-            let plan = wave.plan(compute, scene, film.format())?;
+            let depths = match &depth {
+                Some((held, values, along)) => {
+                    host_depth::prepare(compute, host_depths)?;
+                    let memory = host_depths.enqueue(compute, held, values)?;
+                    Some(DeviceDepths {
+                        memory,
+                        along: *along,
+                    })
+                }
+                None => None,
+            };
+            let plan = wave.plan_behind(compute, scene, depths, film.format())?;
             wave.begin(compute, &plan, scene.image.pixels())?;
             wave.draw_unwatched(compute, &plan, film)
         };

@@ -168,10 +168,11 @@ impl Wave {
         common.push(("counts", self.counts.argument()));
         common.extend(film.named());
         if let Some(view) = &plan.view {
-            common.extend([
-                ("view", view as &dyn Argument),
-                ("depths", self.depths.argument()),
-            ]);
+            let depths = match &plan.depths {
+                Some(others) => others,
+                None => self.depths.argument(),
+            };
+            common.extend([("view", view as &dyn Argument), ("depths", depths)]);
         }
         let kernel = self.kernels.get(plan.task)?;
         let enqueue = |more: &[(&str, &dyn Argument)], items: usize, group: usize| {

@@ -30,8 +30,10 @@ pub(crate) use tiles::workers as tile_workers;
 
 use crate::cost::FrameCost;
 use crate::error::Result;
-use crate::image::{DepthImage, ImageSize};
-use crate::opencl::{Compute, FilmFormat, Handle, RendererOptions, UploadedShared, Watch};
+use crate::image::{DepthAlong, DepthImage, ImageSize};
+use crate::opencl::{
+    Compute, FilmFormat, Handle, RawMemory, RendererOptions, UploadedShared, Watch,
+};
 use crate::scene::{Method, Ray, Reduction, Scene};
 use counts::Counts;
 use dispatch::Launched;
@@ -41,6 +43,14 @@ use pace::Pace;
 use pack::layout::View;
 use pack::{Anchor, PackStamp, PackedSources};
 use tiles::OpenTiles;
+
+/// Lengths on the device, of every pixel by rows from the top left, that end the rays of a scene without depths.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DeviceDepths {
+    pub memory: RawMemory,
+    /// What they are lengths of: ray or axis.
+    pub along: DepthAlong,
+}
 
 /// The kernels and buffers of a device, which are kept from frame to frame.
 #[derive(Debug)]
@@ -134,6 +144,21 @@ impl Wave {
         scene: &Scene,
         film: FilmFormat,
     ) -> Result<Plan> {
+        self.plan_behind(compute, scene, None, film)
+    }
+
+    /// Plans the frame of a valid scene as [`Wave::plan`] does, behind depths that the device has, if there are any:
+    /// the scene then has none.
+    ///
+    /// # Errors
+    /// As [`crate::Renderer::render`].
+    pub(crate) fn plan_behind(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        there: Option<DeviceDepths>,
+        film: FilmFormat,
+    ) -> Result<Plan> {
         let plane = scene.view_plane();
         let reach = plane.farthest_pixel(scene.image) + plane.ray_length;
         let anchor = Anchor::new(scene, plane.eye, reach, plane.ray_length);
@@ -145,9 +170,16 @@ impl Wave {
             false => Rays::Pixels,
         };
         let stamp = self.packed.pack(scene, anchor);
-        let task = self.task(scene, rays, film);
-        let view = pack::view(&plane, scene);
-        self.prepare(compute, scene, task, stamp, Some(view), scene.image)
+        let own = scene.depth.as_ref().map(DepthImage::along);
+        let along = there.map(|depths| depths.along).or(own);
+        let task = Task {
+            has_depth: along.is_some(),
+            ..self.task(scene, rays, film)
+        };
+        let view = pack::view_behind(&plane, scene, along);
+        let mut plan = self.prepare(compute, scene, task, stamp, Some(view), scene.image)?;
+        plan.depths = there.map(|depths| depths.memory);
+        Ok(plan)
     }
 
     /// Plans single rays through a valid scene. Light is measured over the parameter s.
@@ -206,7 +238,7 @@ impl Wave {
             has_series: self.packed.sources.rows.has_series,
             has_ends: self.packed.sources.rows.first_balls.is_some() && rays == Rays::Tiles,
             has_footprints: scene.integration.has_footprints() && rays != Rays::Listed,
-            has_depth: scene.depth.is_some() && rays != Rays::Listed,
+            has_depth: false,
             film,
             rays,
         }

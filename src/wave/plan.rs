@@ -6,6 +6,7 @@ use super::pack::layout::{Integrand, Launch, TilePass, View};
 use super::partition::{self, Counts, Part, Work};
 use super::tiles;
 use crate::image::ImageSize;
+use crate::opencl::RawMemory;
 use crate::scene::{Sampling, Scene};
 
 /// Launches begin at multiples of this many rays: the same ones are always integrated side by side.
@@ -21,6 +22,8 @@ pub(crate) struct Plan {
     pub(super) counts: Counts,
     pub(super) work: Work,
     pub(super) task: Task,
+    /// Depths of others on the device; `None`: the scene's, if it has any.
+    pub(super) depths: Option<RawMemory>,
     tolerance: f64,
 }
 
@@ -81,6 +84,7 @@ impl Plan {
             counts,
             work,
             task,
+            depths: None,
             tolerance,
         }
     }

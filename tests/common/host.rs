@@ -12,8 +12,8 @@ use opencl3::context::Context;
 use opencl3::device::{CL_DEVICE_TYPE_ALL, Device as ClDevice};
 use opencl3::event::Event;
 use opencl3::memory::{
-    Buffer, CL_FLOAT, CL_HALF_FLOAT, CL_MEM_OBJECT_IMAGE2D, CL_MEM_READ_WRITE, CL_RGBA, Image,
-    cl_image_desc, cl_image_format,
+    Buffer, CL_FLOAT, CL_HALF_FLOAT, CL_MEM_OBJECT_IMAGE2D, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE,
+    CL_RGBA, Image, cl_image_desc, cl_image_format,
 };
 use opencl3::platform::get_platforms;
 use opencl3::types::{CL_TRUE, cl_event, cl_mem};
@@ -36,16 +36,21 @@ pub fn device() -> ClDevice {
         .unwrap()
 }
 
+fn queue(context: &Context, properties: u64) -> CommandQueue {
+    // SAFETY: the device is the context's.
+    unsafe { CommandQueue::create(context, context.default_device(), properties) }.unwrap()
+}
+
 impl Host {
     pub fn new(queue_properties: u64) -> Self {
-        let device = device();
-        let context = Context::from_device(&device).unwrap();
-        // SAFETY: the device is the context's.
-        let queue = unsafe { CommandQueue::create(&context, device.id(), queue_properties) };
-        Self {
-            context,
-            queue: queue.unwrap(),
-        }
+        let context = Context::from_device(&device()).unwrap();
+        let queue = queue(&context, queue_properties);
+        Self { context, queue }
+    }
+
+    /// A second queue, in order.
+    pub fn another_queue(&self) -> CommandQueue {
+        queue(&self.context, 0)
     }
 
     pub fn buffer(&self, flags: u64, size: ImageSize) -> Buffer<f32> {
@@ -77,6 +82,60 @@ impl Host {
         // SAFETY: format and description live; no host pointer is given.
         unsafe { Image::create(&self.context, flags, &format, &description, ptr::null_mut()) }
             .unwrap()
+    }
+
+    /// A buffer of these values.
+    pub fn floats(&self, values: &[f32]) -> Buffer<f32> {
+        // SAFETY: no host pointer is given.
+        let made = unsafe {
+            Buffer::create(
+                &self.context,
+                CL_MEM_READ_ONLY,
+                values.len(),
+                ptr::null_mut(),
+            )
+        };
+        let mut buffer = made.unwrap();
+        // SAFETY: the write blocks, and the buffer has as many values.
+        unsafe {
+            self.queue
+                .enqueue_write_buffer(&mut buffer, CL_TRUE, 0, values, &[])
+        }
+        .unwrap();
+        buffer
+    }
+
+    /// Whether the device reads images of a format.
+    pub fn has_format(&self, order: u32, channel_type: u32) -> bool {
+        let formats = self
+            .context
+            .get_supported_image_formats(CL_MEM_READ_ONLY, CL_MEM_OBJECT_IMAGE2D)
+            .unwrap();
+        formats.iter().any(|format| {
+            (format.image_channel_order, format.image_channel_data_type) == (order, channel_type)
+        })
+    }
+
+    /// An image of these bytes, by rows without gaps.
+    pub fn image_with(
+        &self,
+        size: ImageSize,
+        order: u32,
+        channel_type: u32,
+        bytes: &[u8],
+    ) -> Image {
+        let mut image = self.image_of(CL_MEM_READ_ONLY, size, order, channel_type);
+        assert_eq!(bytes.len(), image.element_size().unwrap() * size.pixels());
+        let (origin, region) = ([0; 3], [size.width as usize, size.height as usize, 1]);
+        let (origin, region) = (origin.as_ptr(), region.as_ptr());
+        let bytes = bytes.as_ptr().cast_mut().cast();
+        // SAFETY: the write blocks, and the bytes are as many as the image's.
+        let written = unsafe {
+            self.queue
+                .enqueue_write_image(&mut image, CL_TRUE, origin, region, 0, 0, bytes, &[])
+        };
+        written.unwrap();
+        image
     }
 
     /// The same image where the host may read it.

@@ -3,10 +3,12 @@
 
 use crate::common;
 use energywave::internals::pack::layout::STRUCTS;
-use energywave::internals::{self, DeviceBuffer, KINDS, StructLayout};
+use energywave::internals::{
+    self, DeviceBuffer, DeviceStruct, KINDS, StoredDepths, StructLayout, host_depth_definitions,
+};
 
 /// A kernel that copies every 32-bit word of every field, reached by the field's name, in the order of the host's list.
-fn copy_fields(layout: &StructLayout) -> String {
+fn copy_fields(layout: &StructLayout, files: &str) -> String {
     let copies: String = layout
         .fields
         .iter()
@@ -19,15 +21,22 @@ fn copy_fields(layout: &StructLayout) -> String {
         })
         .collect();
     format!(
-        "#include \"film.h\"\n#include \"view.h\"\n#include \"wave/kinds.h\"\n#include \"wave/types.h\"\n__kernel void copy_fields(__global const {} *record, __global uint *words) {{\n    \
+        "{files}__kernel void copy_fields(__global const {} *record, __global uint *words) {{\n    \
          uint next = 0;\n{copies}}}\n",
         layout.name
     )
 }
 
+/// Where the structs of the wave and of the film are.
+const FILES: &str = "#include \"film.h\"\n#include \"view.h\"\n#include \"wave/kinds.h\"\n#include \"wave/types.h\"\n";
+
+fn words_by_name(layout: &StructLayout) -> Vec<u32> {
+    words_of(layout, FILES, "")
+}
+
 /// The words that the device finds in a record whose word k is k + 1.
 #[allow(unsafe_code)]
-fn words_by_name(layout: &StructLayout) -> Vec<u32> {
+fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
     let compute = common::compute();
     let count = layout.size / 4;
     let record: Vec<u32> = (1..=count as u32).collect();
@@ -35,8 +44,8 @@ fn words_by_name(layout: &StructLayout) -> Vec<u32> {
     input.write(&compute, &record).unwrap();
     let mut output = DeviceBuffer::<u32>::new(&compute, "words", count).unwrap();
     output.write(&compute, &vec![0; count]).unwrap();
-    let text = copy_fields(layout);
-    let options = common::options(1, "");
+    let text = copy_fields(layout, files);
+    let options = common::options(1, definitions);
     let program =
         internals::build_text(&compute, "copy_fields.cl", &text, &KINDS, &options).unwrap();
     // SAFETY: the kernel reads and writes as many words as the record has.
@@ -62,6 +71,12 @@ fn the_device_finds_every_field_where_the_host_put_it() {
         let expected: Vec<u32> = (1..=layout.size as u32 / 4).collect();
         assert_eq!(words_by_name(layout), expected, "{}", layout.name);
     }
+    let expected: Vec<u32> = (1..=size_of::<StoredDepths>() as u32 / 4).collect();
+    let (files, definitions) = ("#include \"depth.cl\"\n", host_depth_definitions());
+    assert_eq!(
+        words_of(&StoredDepths::LAYOUT, files, &definitions),
+        expected
+    );
 }
 
 #[test]

@@ -7,8 +7,10 @@ use crate::common::host::Host;
 use energywave::image::DepthAlong;
 use energywave::scene::{Method, Profile};
 use energywave::verify::built_in_rays;
-use energywave::{Renderer, RendererOptions, Scene};
-use opencl3::memory::{CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA};
+use energywave::{HostDepth, HostDepthMemory, Renderer, RendererOptions, Scene};
+use opencl3::memory::{
+    CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA, ClMem,
+};
 
 fn is_simulator() -> bool {
     common::device().name.contains("Oclgrind")
@@ -196,5 +198,38 @@ fn frames_for_a_host_touch_nothing_but_their_own() {
                     .unwrap();
             }
         }
+    }
+}
+
+#[test]
+fn a_hosts_depths_are_read_where_they_are() {
+    let mut scene = common::empty_scene(21, 10);
+    scene.integration.method = Method::simpson(4);
+    scene.spheres.push(common::sphere([0.3, 0.2, 0.1], 1.0));
+    let size = scene.image;
+    // Rows of 25 values, the last one not longer than the picture's. What is copied from an image oclgrind 21.10 calls
+    // uninitialised. At 1 is the projection plane, where rays begin: nothing is left of them.
+    let (before, pitch) = (3, 25);
+    for (value, is_dark) in [(3.0, false), (1.0, true)] {
+        let host = Host::new(0); // each in a context of its own, as above
+        let options = common::options(1, "");
+        let (context, queue) = (host.context.get(), host.queue.get());
+        // SAFETY: both are alive.
+        let mut renderer = unsafe { Renderer::on_raw_host(context, queue, &options) }.unwrap();
+        let buffer = host.floats(&vec![value; before + 9 * pitch + 21]);
+        let memory = HostDepthMemory::Buffer {
+            buffer: buffer.get(),
+            offset: 4 * before,
+            row_pitch: 4 * pitch,
+        };
+        let mut depth = HostDepth::new(memory, DepthAlong::Axis);
+        depth.is_bottom_up = true;
+        let target = host.buffer(CL_MEM_READ_WRITE, size);
+        // SAFETY: target and depths live until the frame is over.
+        let event = unsafe { renderer.enqueue_behind(&scene, (&target).into(), &depth, &[]) };
+        let found = host.read((&target).into(), size, &[&event.unwrap()]);
+        assert!(found.iter().all(|value| value.is_finite()));
+        let light: f32 = found.chunks(4).map(|pixel| pixel[0]).sum();
+        assert_eq!(light == 0.0, is_dark, "{value}: {light}");
     }
 }

@@ -9,6 +9,7 @@
 mod common;
 
 mod faults; // lets every call of a frame fail in turn
+mod host_depths; // gives a frame a host's depths that do not fit, and lets what reads them fail
 mod host_faults; // lets every call of a host's frame fail, and gives what does not fit
 mod kernel_cache; // spoils the kernels that are kept on disk
 #[cfg(target_os = "linux")] // resident memory is read from /proc

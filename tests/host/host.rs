@@ -42,7 +42,7 @@ fn enqueue(
 }
 
 /// The largest difference of any value, relative to the image's.
-fn difference(found: &[f32], expected: &RadianceImage) -> f32 {
+pub fn difference(found: &[f32], expected: &RadianceImage) -> f32 {
     let pairs = found.iter().zip(expected.as_slice());
     assert_eq!(found.len(), expected.as_slice().len());
     pairs

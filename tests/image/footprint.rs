@@ -1,13 +1,14 @@
 //! Pixels that are means over their squares, against the means of 16x16 rays a pixel.
 
 use crate::common::{self, CURVE_SHAPES, device, far_beyond_target, renderer, sampled};
-use energywave::image::{ImageSize, RadianceImage};
+use energywave::image::{ClipRange, ImageSize, RadianceImage};
 use energywave::scene::{
     Antialias, Beam, Camera, Curve, Cylinder, LightPath, Measure, Method, PathShape, Profile,
     Sampling, Segment, Sphere, Torus,
 };
 use energywave::{Scene, reference};
-use glam::DVec3;
+use glam::dcamera as camera;
+use glam::{DMat4, DVec3};
 
 /// Width and height, and rays a side of a pixel.
 const SIZE: u32 = 120;
@@ -153,6 +154,54 @@ fn pixels_are_the_means_of_many_rays() {
                 "{name} {profile:?}: one ray is no worse: {share}"
             );
         }
+    }
+}
+
+/// The middle of the scene as a camera sees it whose rays are all parallel, its pixels about as large.
+fn by_parallel_rays(scene: &Scene) -> Scene {
+    let view = camera::rh::view::look_at_mat4(scene.camera.eye, DVec3::ZERO, DVec3::Z);
+    let side = 1.2;
+    let projection = DMat4::from_diagonal((1.0 / side, 1.0 / side, -0.1, 1.0).into());
+    let mut scene = scene.clone();
+    let ray_length = scene.camera.ray_length;
+    (scene.image.width, scene.image.height) = (3 * SIZE / 4, 3 * SIZE / 4);
+    scene.camera = Camera::from_clip(view, projection, ClipRange::ZeroToOne);
+    scene.camera.ray_length = ray_length;
+    assert!(scene.view_plane().is_parallel);
+    scene
+}
+
+#[test]
+fn pixels_of_parallel_rays_are_their_means_too() {
+    let mut renderer = renderer(device().lanes, "");
+    // A point, a line that ends, a circle and a curve: how rays spread is the same for all others.
+    let kinds = ["spheres", "beams", "tori", "curves"];
+    let all = scenes(Profile::InverseSquare, 0.003, None).into_iter();
+    for (name, scene) in all.filter(|(name, _)| kinds.contains(name)) {
+        let parallel = by_parallel_rays(&scene);
+        let truth = means(&parallel);
+        for sampling in [Sampling::Pixels, Sampling::Tiles] {
+            let image = renderer.render(&sampled(&parallel, sampling)).unwrap();
+            let share = wrong(&image, &truth);
+            assert!(share <= MOST_WRONG, "{name} {sampling:?}: {share}");
+        }
+        let mut converging = scene.clone();
+        converging.image = parallel.image;
+        let converging = renderer.render(&converging).unwrap();
+        assert!(
+            wrong(&converging, &truth) > 0.5,
+            "{name}: as if from an eye"
+        );
+        if name == "spheres" {
+            continue; // too few pixels
+        }
+        let mut one_ray = parallel.clone();
+        one_ray.integration.antialias = Antialias::None;
+        let share = wrong(&renderer.render(&one_ray).unwrap(), &truth);
+        assert!(
+            share > 5.0 * MOST_WRONG,
+            "{name}: one ray is no worse: {share}"
+        );
     }
 }
 

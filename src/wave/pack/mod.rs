@@ -9,6 +9,7 @@ mod view;
 
 use glam::DVec3;
 
+pub(super) use view::view_behind;
 pub use view::{integrand, ray, view};
 
 use crate::opencl::device_struct;

@@ -17,12 +17,21 @@ const MARGIN: f64 = 1e-5;
 /// So many times as long as a ray is the direction of parallel ones: along it, pixels grow by less than float32 sees.
 const OF_RAY: f64 = (1 << 25) as f64;
 
-/// Packs the view plane, and what depths are measured along.
+/// Packs the view plane, and what the scene's depths are measured along.
 pub fn view(plane: &ViewPlane, scene: &Scene) -> View {
+    view_behind(plane, scene, scene.depth.as_ref().map(DepthImage::along))
+}
+
+/// Packs the view plane, and what depths are measured along, whosever they are.
+pub(in crate::wave) fn view_behind(
+    plane: &ViewPlane,
+    scene: &Scene,
+    along: Option<DepthAlong>,
+) -> View {
     let [first_pixel, column_step, row_step] =
         [plane.first_pixel, plane.column_step, plane.row_step].map(fine);
     let toward = fine(plane.forward * (OF_RAY * plane.ray_length));
-    let near_plane = match scene.depth.as_ref().map(DepthImage::along) {
+    let near_plane = match along {
         _ if plane.is_parallel => plane.near,
         Some(DepthAlong::Axis | DepthAlong::Ndc | DepthAlong::Buffer) => plane.near,
         Some(DepthAlong::Ray) | None => 0.0,
