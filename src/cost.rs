@@ -18,6 +18,14 @@ pub struct FrameCost {
 }
 
 impl FrameCost {
+    /// Adds the cost of what the same device did next.
+    pub(crate) fn then(self, other: Self) -> Self {
+        Self {
+            kernel: self.kernel + other.kernel,
+            ..self.beside(other)
+        }
+    }
+
     /// Adds the cost of a part that was drawn beside this one, by another device.
     pub(crate) fn beside(self, other: Self) -> Self {
         Self {

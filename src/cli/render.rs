@@ -30,17 +30,23 @@ pub fn run(arguments: RenderArguments) -> Outcome {
     let begun = Instant::now();
     let mut progress = Progress::new();
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
-    let image = renderer.render_with_progress(&scene, &mut |share| progress.report(share))?;
+    let is_auto = scene.display.exposure == Exposure::Auto;
+    // An exposure that fits is that of the light before its bloom.
+    renderer.spread_bloom(!is_auto);
+    let mut image = renderer.render_with_progress(&scene, &mut |share| progress.report(share))?;
     drop(progress);
     if was_interrupted() {
         return Err(Error::Interrupted.into());
     }
-    let took = begun.elapsed();
-    if scene.display.exposure == Exposure::Auto {
+    if is_auto {
         let stops = image.auto_exposure();
         scene.display.exposure = stops.into();
         note(&format!("exposure: {stops:.2} stops, by auto"));
+        if let Some(bloom) = &scene.display.bloom {
+            renderer.bloom(&mut image, bloom)?;
+        }
     }
+    let took = begun.elapsed();
     let output = noted(output, &arguments.scene, &scene, &devices);
     output.write(&image, &scene.display)?;
     note(&drawn(&image, &scene, took, &names(&devices)));

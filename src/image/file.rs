@@ -83,12 +83,24 @@ impl ImageFile {
     /// A file that is there keeps its mode and its owner.
     ///
     /// # Errors
-    /// [`Error::Scene`] if the format cannot hold it ([`ImageFormat::check`]); [`Error::Output`] if the disk is full or
-    /// nobody reads the pipe; nothing is left behind then.
+    /// [`Error::Scene`] if the format cannot hold it ([`ImageFormat::check`]); [`Error::OutOfMemory`] if the host has
+    /// too little for the bloom of an EXR; [`Error::Output`] if the disk is full or nobody reads the pipe. Nothing is
+    /// left behind then.
     pub fn write(self, image: &RadianceImage, display: &Display) -> Result<()> {
         self.format.check(display)?;
         if self.format == ImageFormat::Exr {
             let notes = &self.notes;
+            if let Some(bloom) = display.bloom_of(image) {
+                // An exposure that fits is that of the light before its bloom.
+                let display = &Display {
+                    exposure: display.exposure.stops(image).into(),
+                    ..display.clone()
+                };
+                let image = &image.bloomed(&bloom)?;
+                return encoded(self.output, |writer| {
+                    encode::exr(image, display, notes, writer)
+                });
+            }
             return encoded(self.output, |writer| {
                 encode::exr(image, display, notes, writer)
             });

@@ -10,10 +10,12 @@ use opencl3::context::Context;
 use opencl3::event::Event;
 use opencl3::types::{cl_command_queue, cl_context, cl_event};
 
-use super::one::{DeviceRenderer, no_host};
+use super::one::DeviceRenderer;
 use super::{Renderer, RendererBackend};
-use crate::error::Result;
-use crate::opencl::{HostLink, HostTarget, RendererOptions};
+use crate::cost::FrameCost;
+use crate::error::{Error, Result};
+use crate::image::Bloom;
+use crate::opencl::{Film, HostLink, HostTarget, RendererOptions, unfit};
 use crate::scene::Scene;
 
 impl Renderer {
@@ -70,12 +72,68 @@ impl Renderer {
         wait_list: &[cl_event],
     ) -> Result<Event> {
         self.check(scene)?;
+        let bloom = self.bloom_of(scene);
         match &mut self.backend {
             // SAFETY: the caller's promise.
             RendererBackend::OpenCl(renderer) => unsafe {
-                renderer.enqueue(scene, target, wait_list)
+                renderer.enqueue(scene, bloom, target, wait_list)
             },
             RendererBackend::Several(_) | RendererBackend::Reference { .. } => Err(no_host()),
         }
     }
+}
+
+impl DeviceRenderer {
+    /// Enqueues a frame of a valid scene for the host. Nothing here waits.
+    ///
+    /// # Safety
+    /// As [`crate::Renderer::enqueue`].
+    unsafe fn enqueue(
+        &mut self,
+        scene: &Scene,
+        bloom: Option<Bloom>,
+        target: HostTarget,
+        wait_list: &[cl_event],
+    ) -> Result<Event> {
+        self.bloom_cost = FrameCost::default();
+        let Self {
+            wave,
+            spreader,
+            film,
+            host,
+            compute,
+            ..
+        } = self;
+        let host = host.as_mut().ok_or_else(no_host)?;
+        let size = (scene.image.width, scene.image.height);
+        // SAFETY: the caller's promise.
+        let mut frame = unsafe { host.begin(compute, film, target, size, wait_list) }?;
+        let mut draw = |film: &mut Film| {
+            let plan = wave.plan(compute, scene, film.format())?;
+            wave.begin(compute, &plan, scene.image.pixels())?;
+            let Some(bloom) = bloom else {
+                return wave.draw_unwatched(compute, &plan, film);
+            };
+            film.leave_unfinished(true);
+            let drawn = wave.draw_unwatched(compute, &plan, film);
+            film.leave_unfinished(false);
+            drawn?;
+            spreader.spread(compute, film, scene.image, &bloom)
+        };
+        let mut drawn = draw(film);
+        if matches!(drawn, Err(Error::Build { .. }))
+            && host.copies_instead(compute, film, &mut frame)?
+        {
+            drawn = draw(film);
+        }
+        host.end(compute, film, frame, drawn)
+    }
+}
+
+/// Makes the error of a frame that was to be enqueued by a renderer without a host.
+fn no_host() -> Error {
+    unfit(
+        "queue",
+        "this renderer was made without one; make it with Renderer::on_host",
+    )
 }

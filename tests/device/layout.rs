@@ -3,10 +3,18 @@
 
 use crate::common;
 use energywave::internals::pack::layout::STRUCTS;
-use energywave::internals::{self, DeviceBuffer, KINDS, StructLayout};
+use energywave::internals::{self, BloomStep, DeviceBuffer, DeviceStruct, KINDS, StructLayout};
+
+const BLOOM_STEP: StructLayout = BloomStep::LAYOUT;
 
 /// A kernel that copies every 32-bit word of every field, reached by the field's name, in the order of the host's list.
 fn copy_fields(layout: &StructLayout) -> String {
+    let headers = match layout.name == BLOOM_STEP.name {
+        true => "#include \"film.h\"\n#include \"bloom/step.h\"\n",
+        false => {
+            "#include \"film.h\"\n#include \"view.h\"\n#include \"wave/kinds.h\"\n#include \"wave/types.h\"\n"
+        }
+    };
     let copies: String = layout
         .fields
         .iter()
@@ -19,7 +27,7 @@ fn copy_fields(layout: &StructLayout) -> String {
         })
         .collect();
     format!(
-        "#include \"film.h\"\n#include \"view.h\"\n#include \"wave/kinds.h\"\n#include \"wave/types.h\"\n__kernel void copy_fields(__global const {} *record, __global uint *words) {{\n    \
+        "{headers}__kernel void copy_fields(__global const {} *record, __global uint *words) {{\n    \
          uint next = 0;\n{copies}}}\n",
         layout.name
     )
@@ -37,8 +45,11 @@ fn words_by_name(layout: &StructLayout) -> Vec<u32> {
     output.write(&compute, &vec![0; count]).unwrap();
     let text = copy_fields(layout);
     let options = common::options(1, "");
-    let program =
-        internals::build_text(&compute, "copy_fields.cl", &text, &KINDS, &options).unwrap();
+    let program = match layout.name == BLOOM_STEP.name {
+        true => internals::build_bloom_text(&compute, "copy_fields.cl", &text, &options),
+        false => internals::build_text(&compute, "copy_fields.cl", &text, &KINDS, &options),
+    }
+    .unwrap();
     // SAFETY: the kernel reads and writes as many words as the record has.
     unsafe {
         internals::run(
@@ -58,7 +69,7 @@ fn words_by_name(layout: &StructLayout) -> Vec<u32> {
 
 #[test]
 fn the_device_finds_every_field_where_the_host_put_it() {
-    for layout in STRUCTS {
+    for layout in STRUCTS.iter().chain([&BLOOM_STEP]) {
         let expected: Vec<u32> = (1..=layout.size as u32 / 4).collect();
         assert_eq!(words_by_name(layout), expected, "{}", layout.name);
     }

@@ -1,0 +1,93 @@
+//! The bloom of a frame, or of an image, on the renderer's device.
+
+use super::one::DeviceRenderer;
+use super::{Renderer, RendererBackend};
+use crate::error::Result;
+use crate::image::{Bloom, ImageSize, RadianceImage, spread_light};
+use crate::opencl::{Film, Pixel};
+use crate::scene::Scene;
+
+impl Renderer {
+    /// Lets the next frames have the bloom of their scene's display, worked out on the device before they are read; at
+    /// first they have none, since radiance is what scenes are compared by. [`Renderer::render`],
+    /// [`render_with_progress`](Renderer::render_with_progress), [`render_into`](Renderer::render_into),
+    /// [`render_mapped`](Renderer::render_mapped) and [`enqueue`](Renderer::enqueue) spread it;
+    /// [`render_rows`](Renderer::render_rows) cannot. Images say that they have it ([`RadianceImage::bloom`]), and no
+    /// display spreads it again; what was rendered into memory of the caller is for displays without.
+    ///
+    /// ```no_run
+    /// # fn main() -> energywave::Result<()> {
+    /// # let (device, mut scene) = (energywave::Device::best()?, energywave::Scene::default());
+    /// scene.display.bloom = Some(energywave::image::Bloom::new(0.2));
+    /// let mut renderer = energywave::Renderer::new(&device)?;
+    /// renderer.spread_bloom(true);
+    /// let picture = renderer.render(&scene)?.tone_map(&scene.display);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn spread_bloom(&mut self, spreads: bool) {
+        self.spreads_bloom = spreads;
+    }
+
+    /// Spreads the light of an image on the device, as [`RadianceImage::bloomed`] does on the host: of one that came in
+    /// parts, say, or whose exposure was to be found first. A CPU works in the image's own memory. The built-in
+    /// reference does it on the host; so does a device whose buffers are too small.
+    ///
+    /// # Errors
+    /// [`Error::Build`](crate::Error::Build) if the kernels' compiler refuses;
+    /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::OutOfMemory`](crate::Error::OutOfMemory),
+    /// [`Error::Device`](crate::Error::Device). The image's light is undefined then.
+    pub fn bloom(&mut self, image: &mut RadianceImage, bloom: &Bloom) -> Result<()> {
+        let (size, light) = (image.size(), image.as_mut_slice());
+        match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.bloom(size, light, bloom),
+            RendererBackend::Several(renderer) => renderer.bloom(size, light, bloom),
+            RendererBackend::Reference { .. } => {
+                spread_light(size, light, bloom);
+                Ok(())
+            }
+        }?;
+        image.mark_bloomed(Some(*bloom));
+        Ok(())
+    }
+
+    /// Returns the bloom that a frame is to have.
+    pub(super) fn bloom_of(&self, scene: &Scene) -> Option<Bloom> {
+        let bloom = scene.display.bloom.filter(|bloom| bloom.strength > 0.0);
+        bloom.filter(|_| self.spreads_bloom)
+    }
+}
+
+impl DeviceRenderer {
+    /// Spreads the light of an image, 4 values a pixel, where it is.
+    pub(crate) fn bloom(
+        &mut self,
+        size: ImageSize,
+        light: &mut [f32],
+        bloom: &Bloom,
+    ) -> Result<()> {
+        let Self {
+            spreader,
+            bloom_cost,
+            film,
+            compute,
+            ..
+        } = self;
+        let (pixels, _) = light.as_chunks_mut::<4>();
+        let pixels: &mut [Pixel] = pixels;
+        let count = pixels.len();
+        if Film::reaches(compute, pixels) {
+            let mut film = film.lend(compute, pixels)?;
+            spreader.spread(compute, &mut film, size, bloom)?;
+            film.show_host(count)?;
+        } else if film.reserve_band(compute, count, 1)? >= count {
+            film.write(compute, pixels)?;
+            spreader.spread(compute, film, size, bloom)?;
+            film.read(compute, pixels)?;
+        } else {
+            spread_light(size, light, bloom);
+        }
+        *bloom_cost = spreader.settle(compute)?;
+        Ok(())
+    }
+}
