@@ -90,13 +90,13 @@ __kernel void finish(__global const BloomStep *const restrict steps, __global co
         const float8 even = given * even_column(&around), odd = given * odd_column(&around);
         const uint upper = above + 2u * column, lower = below + 2u * column;
         const bool has_odd_column = 2u * column + 1u < step.fine_width;
-        finish_pixel(&part, upper, even.lo, kept, FILM_ARGUMENT);
+        finish_pixel(&part, upper, FIRST(even), kept, FILM_ARGUMENT);
         if (has_odd_column)
-            finish_pixel(&part, upper + 1u, odd.lo, kept, FILM_ARGUMENT);
+            finish_pixel(&part, upper + 1u, FIRST(odd), kept, FILM_ARGUMENT);
         if (has_odd_row)
-            finish_pixel(&part, lower, even.hi, kept, FILM_ARGUMENT);
+            finish_pixel(&part, lower, SECOND(even), kept, FILM_ARGUMENT);
         if (has_odd_row && has_odd_column)
-            finish_pixel(&part, lower + 1u, odd.hi, kept, FILM_ARGUMENT);
+            finish_pixel(&part, lower + 1u, SECOND(odd), kept, FILM_ARGUMENT);
         around = next_around(&around, &rows, &step, column + 1u);
     }
 }

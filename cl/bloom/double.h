@@ -18,7 +18,8 @@ INLINE Rows rows_around(const BloomStep *const step, const Channels4 coarse, con
 // A coarse column, doubled downwards: what the even row has, and the odd one.
 INLINE float8 two_rows(const Rows *const rows, const uint column) {
     const float4 near = PIXEL(rows->near, column), after = PIXEL(rows->after, column);
-    return (float8)(0.125f * (PIXEL(rows->before, column) + after) + 0.75f * near, 0.5f * (near + after));
+    const float4 even = 0.125f * (PIXEL(rows->before, column) + after) + 0.75f * near, odd = 0.5f * (near + after);
+    return BOTH(even, odd);
 }
 
 // Three columns, of which the two fine ones at the middle are made.
@@ -59,14 +60,14 @@ INLINE void double_piece(const BloomStep *const step, __global float *const leve
     for (uint column = piece.begin; column < piece.end; ++column) {
         const float8 even = step->share * even_column(&around), odd = step->share * odd_column(&around);
         if (2u * column + 1u < step->fine_width) {
-            const float8 upper = step->fine_share * vload8(column, even_row) + (float8)(even.lo, odd.lo);
-            const float8 lower = step->fine_share * vload8(column, odd_row) + (float8)(even.hi, odd.hi);
+            const float8 upper = step->fine_share * vload8(column, even_row) + BOTH(FIRST(even), FIRST(odd));
+            const float8 lower = step->fine_share * vload8(column, odd_row) + BOTH(SECOND(even), SECOND(odd));
             vstore8(upper, column, even_row);
             if (has_odd_row)
                 vstore8(lower, column, odd_row);
         } else {
-            const float4 upper = step->fine_share * vload4(2u * column, even_row) + even.lo;
-            const float4 lower = step->fine_share * vload4(2u * column, odd_row) + even.hi;
+            const float4 upper = step->fine_share * vload4(2u * column, even_row) + FIRST(even);
+            const float4 lower = step->fine_share * vload4(2u * column, odd_row) + SECOND(even);
             vstore4(upper, 2u * column, even_row);
             if (has_odd_row)
                 vstore4(lower, 2u * column, odd_row);

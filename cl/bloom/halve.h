@@ -53,18 +53,18 @@ INLINE void halve_piece(const BloomStep *const step, __global const float *const
     for (uint center = piece.begin; center < begin; ++center)
         vstore4(halved_with_care(step, &column, across, center, is_picture), center, to);
     if (begin < end) {
-        const float8 before_weights = (float8)((float4)(0.25f), (float4)(MIDDLE_WEIGHT));
-        const float8 after_weights = (float8)((float4)(0.25f), (float4)(0.0625f));
-        float4 first = two_columns(&column, 2u * begin - 2u).lo;
+        const float8 before_weights = BOTH((float4)(0.25f), (float4)(MIDDLE_WEIGHT));
+        const float8 after_weights = BOTH((float4)(0.25f), (float4)(0.0625f));
+        float4 first = FIRST(two_columns(&column, 2u * begin - 2u));
         float8 before = two_columns(&column, 2u * begin - 1u);
         for (uint center = begin; center < end; ++center) {
             const float8 after = two_columns(&column, 2u * center + 1u);
             const float8 both = before_weights * before + after_weights * after;
-            float4 light = 0.0625f * first + both.lo + both.hi;
+            float4 light = 0.0625f * first + FIRST(both) + SECOND(both);
             if (is_picture && !is_finite_pixel(light))
                 light = halved_with_care(step, &column, across, center, is_picture);
             vstore4(light, center, to);
-            first = before.hi, before = after;
+            first = SECOND(before), before = after;
         }
     }
     for (uint center = end; center < piece.end; ++center)

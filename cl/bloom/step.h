@@ -31,9 +31,19 @@ typedef __global const float *Channels4; // four of each pixel
 #define PIXEL(row, column) vload4(0, (row) + 4u * (column))
 #define PAIR(row, column) vload8(0, (row) + 4u * (column))
 
+// Two pixels side by side, and either of them. With -D NO_SHUFFLES element by element: oclgrind 21.10 ends on others.
+#ifdef NO_SHUFFLES
+#define BOTH(a, b) ((float8)((a).x, (a).y, (a).z, (a).w, (b).x, (b).y, (b).z, (b).w))
+#define FIRST(pair) ((float4)((pair).s0, (pair).s1, (pair).s2, (pair).s3))
+#define SECOND(pair) ((float4)((pair).s4, (pair).s5, (pair).s6, (pair).s7))
+#else
+#define BOTH(a, b) ((float8)(a, b))
+#define FIRST(pair) ((pair).lo)
+#define SECOND(pair) ((pair).hi)
+#endif
+
 // Returns whether all channels are finite, also where a compiler takes for granted that they are.
 INLINE bool is_finite_pixel(const float4 light) {
     const uint4 bits = as_uint4(light) & 0x7fffffffu;
-    const uint2 most = max(bits.lo, bits.hi);
-    return max(most.x, most.y) < 0x7f800000u;
+    return max(max(bits.x, bits.y), max(bits.z, bits.w)) < 0x7f800000u;
 }

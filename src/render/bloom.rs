@@ -91,3 +91,62 @@ impl DeviceRenderer {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::opencl::{RendererOptions, discover};
+    use crate::render::one::{Rows, tests::ring};
+
+    #[test]
+    fn an_image_has_the_same_bloom_in_its_place_in_a_copy_and_larger_than_a_buffer() {
+        let mut scene = ring(96);
+        scene.image.width = 100;
+        let (size, values) = (scene.image, 4 * scene.image.pixels());
+        let bloom = Bloom::new(0.5);
+        let (mut images, mut without) = (Vec::new(), Vec::new());
+        // The last one comes in bands, which the host has to join.
+        for bytes in [1 << 30, 40_000] {
+            let mut device = discover().devices.swap_remove(0);
+            device.max_allocation_bytes = bytes;
+            let options = RendererOptions::default();
+            let mut renderer = DeviceRenderer::new(&device, &options).unwrap();
+            let mut draw = |bloom: Option<Bloom>, light: &mut [f32]| {
+                let wanted = Rows {
+                    rows: 0..size.height,
+                    target: light,
+                    stride: 4 * size.width as usize,
+                    bloom,
+                };
+                let nothing = &mut |_: f32| ControlFlow::Continue(());
+                renderer.render_rows(&scene, wanted, nothing).unwrap();
+                renderer.bloom_cost.launches
+            };
+            let mut film = vec![0.0; values];
+            let launches = draw(Some(bloom), &mut film);
+            assert_eq!(launches >= 2, bytes > 40_000);
+            let mut before = vec![0.0; values + 4];
+            assert_eq!(draw(None, &mut before[..values]), 0);
+            // Where kernels can work in it, and one value after that.
+            let aligned = before.as_ptr().addr() % 16 / 4;
+            for begin in [(4 - aligned) % 4, (5 - aligned) % 4] {
+                let mut after = before.clone();
+                after.copy_within(..values, begin);
+                renderer
+                    .bloom(size, &mut after[begin..begin + values], &bloom)
+                    .unwrap();
+                images.push(after[begin..begin + values].to_vec());
+            }
+            images.push(film);
+            without = before;
+        }
+        let is_like = |image: &[f32]| {
+            let mut pairs = image.iter().zip(&images[0]);
+            pairs.all(|(found, expected)| (found - expected).abs() <= 2e-6 * expected)
+        };
+        assert!(images.iter().all(|image| is_like(image)));
+        assert!(!is_like(&without));
+    }
+}
