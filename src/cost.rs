@@ -18,7 +18,7 @@ pub struct FrameCost {
 }
 
 impl FrameCost {
-    /// Adds the cost of what the same device did next.
+    /// Adds the cost of what was drawn after this.
     pub(crate) fn then(self, other: Self) -> Self {
         Self {
             kernel: self.kernel + other.kernel,

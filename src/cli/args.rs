@@ -76,6 +76,9 @@ pub struct RenderArguments {
     /// Exposure in stops, or auto, which fits the picture [default: the scene's, else fits the scene]
     #[arg(long, value_name = "STOPS|auto", value_parser = exposure, allow_hyphen_values = true)]
     pub exposure: Option<Exposure>,
+    /// Write a layer into the EXR for each light_group of the scene, and one for the rest
+    #[arg(long)]
+    pub light_groups: bool,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]

@@ -14,6 +14,10 @@ use super::{Outcome, choose_devices, method_name, names, note, read_scene, tell_
 pub fn run(arguments: RenderArguments) -> Outcome {
     let format = format(&arguments)?;
     check_bits(&arguments, format)?;
+    if arguments.light_groups && format != ImageFormat::Exr {
+        let message = "--light-groups: they are layers, which need an .exr";
+        return Err(Error::Unsupported(message.to_owned()).into());
+    }
     let overrides = &arguments.overrides;
     let mut scene = read_scene(&arguments.scene, |scene, keys| {
         overrides.apply(scene, keys)?;
@@ -22,6 +26,10 @@ pub fn run(arguments: RenderArguments) -> Outcome {
         display.exposure = arguments.exposure.unwrap_or(display.exposure);
         format.check(display)
     })?;
+    let groups = match arguments.light_groups {
+        true => light_groups(&scene)?,
+        false => Vec::new(),
+    };
     // Waits for the reader of a pipe: before Ctrl-C is caught.
     let output = create(&arguments.output, format)?;
     tell_depths(&scene);
@@ -33,7 +41,19 @@ pub fn run(arguments: RenderArguments) -> Outcome {
     let is_auto = scene.display.exposure == Exposure::Auto;
     // An exposure that fits is that of the light before its bloom.
     renderer.spread_bloom(!is_auto);
-    let mut image = renderer.render_with_progress(&scene, &mut |share| progress.report(share))?;
+    let parts = 1.0 + groups.len() as f32;
+    let mut drawn_parts = 0.0;
+    let mut draw = |scene: &Scene| {
+        let mut report = |share| progress.report((drawn_parts + share) / parts);
+        let image = renderer.render_with_progress(scene, &mut report);
+        drawn_parts += 1.0;
+        image
+    };
+    let mut image = draw(&scene)?;
+    let mut layers = groups
+        .into_iter()
+        .map(|(name, scene)| Ok((name, draw(&scene)?)))
+        .collect::<Result<Vec<_>, Error>>()?;
     drop(progress);
     if was_interrupted() {
         return Err(Error::Interrupted.into());
@@ -44,13 +64,43 @@ pub fn run(arguments: RenderArguments) -> Outcome {
         note(&format!("exposure: {stops:.2} stops, by auto"));
         if let Some(bloom) = &scene.display.bloom {
             renderer.bloom(&mut image, bloom)?;
+            for (_, layer) in &mut layers {
+                renderer.bloom(layer, bloom)?;
+            }
         }
     }
     let took = begun.elapsed();
     let output = noted(output, &arguments.scene, &scene, &devices);
-    output.write(&image, &scene.display)?;
+    match layers.as_slice() {
+        [] => output.write(&image, &scene.display)?,
+        layers => output.write_light_groups(&image, layers, &scene.display)?,
+    }
     note(&drawn(&image, &scene, took, &names(&devices)));
     Ok(())
+}
+
+/// The layer of light that belongs to no group.
+const UNGROUPED: &str = "rest";
+
+/// Returns a scene for each group of lights, and one for what belongs to none.
+fn light_groups(scene: &Scene) -> Result<Vec<(String, Scene)>, Error> {
+    let names = scene.light_groups();
+    if names.is_empty() {
+        let message = "--light-groups: no source or [[group]] of the scene names a light_group";
+        return Err(Error::Unsupported(message.to_owned()));
+    }
+    if scene.has_ungrouped_light() && names.contains(&UNGROUPED) {
+        let message = format!(
+            "--light-groups: `{UNGROUPED}` is the layer of sources without a light_group; call that one otherwise"
+        );
+        return Err(Error::Unsupported(message));
+    }
+    let rest = scene.has_ungrouped_light().then_some((UNGROUPED, None));
+    let named = names.into_iter().map(|name| (name, Some(name)));
+    Ok(named
+        .chain(rest)
+        .map(|(name, group)| (name.to_owned(), scene.of_light_group(group)))
+        .collect())
 }
 
 /// Checks the bits that were typed, which stand in no file.

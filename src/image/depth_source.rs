@@ -122,11 +122,18 @@ impl Stored {
         let needed = 4 * size.pixels() as u64;
         let wrong = |found: u64| {
             format!(
-                "{found} bytes; {}x{} pixels of float32, little endian by rows from the top left, are {needed}",
+                "{found} bytes; {}x{} pixels of float32, little endian by rows from the top left, are {needed}, or \
+             4, 9 and so on times that where depths are finer",
                 size.width, size.height
             )
         };
-        if found != needed {
+        // A scene's depths may be finer than its pixels, by a whole number.
+        let across = (found / needed.max(1)).isqrt().max(1);
+        let size = ImageSize {
+            width: size.width.saturating_mul(across as u32),
+            height: size.height.saturating_mul(across as u32),
+        };
+        if found != needed * across * across || size.width.max(size.height) > ImageSize::LIMIT {
             return Err(wrong(found));
         }
         let mut values = room_for(size)?;

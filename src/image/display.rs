@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::bloom::Glow;
 use super::srgb::srgb_encode;
 use super::{Background, Bloom, DisplayImage, Exposure, RadianceImage, ToneMap};
+#[cfg(feature = "files")]
+use crate::error::Result;
 use crate::threads;
 
 /// How linear radiance becomes a picture. Structs may get further fields: write `..Display::default()`.
@@ -95,7 +97,7 @@ impl RadianceImage {
 
 /// An image, and what a display makes of it.
 pub(super) struct Film<'a> {
-    image: &'a RadianceImage,
+    image: Cow<'a, RadianceImage>,
     display: &'a Display,
     gain: f32,
     glow: Option<Glow>,
@@ -105,11 +107,25 @@ impl<'a> Film<'a> {
     pub(super) fn new(image: &'a RadianceImage, display: &'a Display) -> Self {
         let bloom = display.bloom_of(image);
         Self {
-            image,
+            image: Cow::Borrowed(image),
             display,
             gain: display.exposure.stops(image).exp2() as f32,
             glow: bloom.map(|bloom| Glow::new(image.size, &image.data, &bloom)),
         }
+    }
+
+    /// Spreads the light of all pixels at once, for [`pixel`](Self::pixel).
+    #[cfg(feature = "files")]
+    pub(super) fn with_bloom(image: &'a RadianceImage, display: &'a Display) -> Result<Self> {
+        Ok(Self {
+            image: match display.bloom_of(image) {
+                Some(bloom) => Cow::Owned(image.bloomed(&bloom)?),
+                None => Cow::Borrowed(image),
+            },
+            display,
+            gain: display.exposure.stops(image).exp2() as f32,
+            glow: None,
+        })
     }
 
     /// Returns linear RGBA before exposure and tone mapping: colour times alpha, over the background if there is one. A
@@ -141,7 +157,7 @@ impl<'a> Film<'a> {
     }
 
     /// Returns the light of a row, 4 values a pixel.
-    fn row(&self, row: usize) -> Cow<'a, [f32]> {
+    fn row(&self, row: usize) -> Cow<'_, [f32]> {
         let values = 4 * self.image.size.width as usize;
         let light = &self.image.data[row * values..(row + 1) * values];
         match &self.glow {

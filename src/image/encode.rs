@@ -1,13 +1,14 @@
 //! Encodes images: EXR by the crate exr, which has its attributes, and the others by the crate image.
 
 use exr::prelude::{
-    Encoding, Image, Layer, LayerAttributes, SpecificChannels, Text, Vec2, WritableImage, f16,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, SmallVec,
+    SpecificChannels, Text, Vec2, WritableImage, f16,
 };
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 
 use super::display::Film;
-use super::{Display, DisplayImage, RadianceImage};
+use super::{Alpha, Display, DisplayImage, RadianceImage};
 use crate::output::Sink;
 
 /// Why an encoder failed.
@@ -24,7 +25,7 @@ pub(super) fn exr(
     writer: &mut dyn Sink,
 ) -> Result<(), Fault> {
     let size = image.size();
-    let film = Film::new(image, display);
+    let film = Film::with_bloom(image, display)?;
     let extent = Vec2(size.width as usize, size.height as usize);
     let pixel = |place: Vec2<usize>| {
         let index = place.flat_index_for_size(extent);
@@ -46,6 +47,54 @@ pub(super) fn exr(
             Image::from_layer(layer).write().to_buffered(writer)?;
         }
     }
+    Ok(())
+}
+
+/// Encodes linear light as [`exr`] does, and that of groups of lights, each in channels that begin with its name.
+pub(super) fn exr_of_groups(
+    image: &RadianceImage,
+    groups: &[(String, RadianceImage)],
+    display: &Display,
+    notes: &Notes,
+    writer: &mut dyn Sink,
+) -> Result<(), Fault> {
+    let size = image.size();
+    let samples = |film: &Film<'_>, channel: usize| {
+        let values = (0..size.pixels()).map(|index| film.pixel(index)[channel]);
+        match display.bits {
+            Some(16) => FlatSamples::F16(values.map(half).collect()),
+            _ => FlatSamples::F32(values.collect()),
+        }
+    };
+    let mut channels = SmallVec::new();
+    let mut add = |film: &Film<'_>, prefix: &str, names: &[&str]| {
+        for (channel, name) in names.iter().enumerate() {
+            let name = Text::new_or_panic(format!("{prefix}{name}"));
+            channels.push(AnyChannel::new(name, samples(film, channel)));
+        }
+    };
+    add(
+        &Film::with_bloom(image, display)?,
+        "",
+        &["R", "G", "B", "A"],
+    );
+    // What they lie over is in the image, once.
+    let alone = Display {
+        background: None,
+        alpha: Alpha::Opaque,
+        ..display.clone()
+    };
+    for (name, image) in groups {
+        add(
+            &Film::with_bloom(image, &alone)?,
+            &format!("{name}."),
+            &["R", "G", "B"],
+        );
+    }
+    let extent = Vec2(size.width as usize, size.height as usize);
+    let channels = AnyChannels::sort(channels);
+    let layer = Layer::new(extent, attributes(notes), Encoding::default(), channels);
+    Image::from_layer(layer).write().to_buffered(writer)?;
     Ok(())
 }
 

@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use super::encode::{self, Fault, Notes};
-use super::openexr::OpenExr;
+use super::openexr::{ChannelName, OpenExr};
 use super::{Alpha, Display, DisplayImage, ImageFormat, RadianceImage};
 use crate::error::{Error, Result};
 use crate::output::{Output, Sink};
@@ -83,24 +83,12 @@ impl ImageFile {
     /// A file that is there keeps its mode and its owner.
     ///
     /// # Errors
-    /// [`Error::Scene`] if the format cannot hold it ([`ImageFormat::check`]); [`Error::OutOfMemory`] if the host has
-    /// too little for the bloom of an EXR; [`Error::Output`] if the disk is full or nobody reads the pipe. Nothing is
-    /// left behind then.
+    /// [`Error::Scene`] if the format cannot hold it ([`ImageFormat::check`]); [`Error::Output`] if the disk is full,
+    /// nobody reads the pipe or the host has too little memory for the bloom of an EXR; nothing is left behind then.
     pub fn write(self, image: &RadianceImage, display: &Display) -> Result<()> {
         self.format.check(display)?;
         if self.format == ImageFormat::Exr {
             let notes = &self.notes;
-            if let Some(bloom) = display.bloom_of(image) {
-                // An exposure that fits is that of the light before its bloom.
-                let display = &Display {
-                    exposure: display.exposure.stops(image).into(),
-                    ..display.clone()
-                };
-                let image = &image.bloomed(&bloom)?;
-                return encoded(self.output, |writer| {
-                    encode::exr(image, display, notes, writer)
-                });
-            }
             return encoded(self.output, |writer| {
                 encode::exr(image, display, notes, writer)
             });
@@ -111,6 +99,41 @@ impl ImageFile {
             &image.tone_map(display),
             display.quality,
         )
+    }
+}
+
+impl ImageFile {
+    /// Writes an EXR as [`ImageFile::write`] does, with further layers: the light of groups of lights
+    /// ([`Scene::of_light_group`](crate::Scene::of_light_group)), in channels such as `rings.R`. They have no alpha and
+    /// no background.
+    ///
+    /// # Errors
+    /// As [`ImageFile::write`]; [`Error::Unsupported`] if it is no EXR, a size differs, or a name stands twice, is
+    /// empty or no ASCII.
+    pub fn write_light_groups(
+        self,
+        image: &RadianceImage,
+        groups: &[(String, RadianceImage)],
+        display: &Display,
+    ) -> Result<()> {
+        self.format.check(display)?;
+        if self.format != ImageFormat::Exr {
+            let message = "layers of groups of lights need an EXR";
+            return Err(Error::Unsupported(message.to_owned()));
+        }
+        for (index, (name, group)) in groups.iter().enumerate() {
+            let is_double = groups[..index].iter().any(|(other, _)| other == name);
+            if group.size() != image.size() || is_double || name.is_empty() || !name.is_ascii() {
+                return Err(Error::Unsupported(format!(
+                    "layer `{}`: layers have a name of their own, of ASCII, and the size of the image",
+                    crate::shown::shown(name)
+                )));
+            }
+        }
+        let notes = &self.notes;
+        encoded(self.output, |writer| {
+            encode::exr_of_groups(image, groups, display, notes, writer)
+        })
     }
 }
 
@@ -171,13 +194,30 @@ impl RadianceImage {
     /// # Errors
     /// [`Error::Input`] if the file cannot be read, is no OpenEXR image, or has not these channels.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
+        Self::open_channels(path.as_ref(), "")
+    }
+
+    /// Reads a layer of a linear `.exr`, such as that of a group of lights: the channels `layer.R` and so on.
+    ///
+    /// # Errors
+    /// As [`RadianceImage::open`].
+    pub fn open_layer(path: impl AsRef<Path>, layer: &str) -> Result<Self> {
+        Self::open_channels(path.as_ref(), &format!("{layer}."))
+    }
+
+    fn open_channels(path: &Path, prefix: &str) -> Result<Self> {
         let fail = |reason: String| Error::input(path, reason);
         let file = OpenExr::open(path)?;
         let all = file.channels();
-        let of = |name: &str| all.iter().find(|channel| channel.name == name);
+        let of = |name: &str| {
+            let is_it = |channel: &&ChannelName| channel.name.strip_prefix(prefix) == Some(name);
+            all.iter().find(is_it)
+        };
         let (Some(red), Some(green), Some(blue)) = (of("R"), of("G"), of("B")) else {
-            return Err(fail("it has no channels R, G and B".to_owned()));
+            let prefix = crate::shown::shown(prefix);
+            return Err(fail(format!(
+                "it has no channels {prefix}R, {prefix}G and {prefix}B"
+            )));
         };
         let mut ids = vec![red.id, green.id, blue.id];
         ids.extend(of("A").map(|alpha| alpha.id));

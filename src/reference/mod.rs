@@ -20,8 +20,8 @@ pub use quadrature::integrate;
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
 use crate::scene::{
-    Absorption, CORE_FLOOR, Decay, Falloff, Integration, Method, Profile, Ray, Reduction, Scene,
-    ViewPlane,
+    Absorption, CORE_FLOOR, Decay, DepthLayers, Falloff, Integration, Method, Profile, Ray,
+    Reduction, Scene, ViewPlane,
 };
 use crate::threads;
 
@@ -207,12 +207,21 @@ fn render_image(scene: &Scene, method: Method) -> Result<RadianceImage> {
     let mut image = RadianceImage::new(scene.image)?;
     let nothing = &mut |_: f32| ControlFlow::Continue(());
     let rows = 0..scene.image.height;
-    render_rows(scene, method, rows, image.as_mut_slice(), nothing)?;
+    match DepthLayers::of(scene, None)? {
+        None => render_rows(scene, method, rows, image.as_mut_slice(), nothing)?,
+        Some(layers) => {
+            let stride = 4 * scene.image.width as usize;
+            let target = (image.as_mut_slice(), stride);
+            layers.draw(scene, rows.clone(), target, &mut |scene, target, _, _| {
+                render_rows(scene, method, rows.clone(), target, nothing)
+            })?;
+        }
+    }
     Ok(image)
 }
 
-/// Renders some rows of a validated scene into `target`, RGBA by rows, in bands between which `progress` may stop the
-/// work.
+/// Renders some rows of a validated scene, whose depths are as many as its pixels, into `target`, RGBA by rows, in
+/// bands between which `progress` may stop the work.
 pub(crate) fn render_rows(
     scene: &Scene,
     method: Method,

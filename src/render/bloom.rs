@@ -38,7 +38,17 @@ impl Renderer {
     /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::OutOfMemory`](crate::Error::OutOfMemory),
     /// [`Error::Device`](crate::Error::Device). The image's light is undefined then.
     pub fn bloom(&mut self, image: &mut RadianceImage, bloom: &Bloom) -> Result<()> {
-        let (size, light) = (image.size(), image.as_mut_slice());
+        self.spread(image.size(), image.as_mut_slice(), bloom)?;
+        image.mark_bloomed(Some(*bloom));
+        Ok(())
+    }
+
+    pub(super) fn spread(
+        &mut self,
+        size: ImageSize,
+        light: &mut [f32],
+        bloom: &Bloom,
+    ) -> Result<()> {
         match &mut self.backend {
             RendererBackend::OpenCl(renderer) => renderer.bloom(size, light, bloom),
             RendererBackend::Several(renderer) => renderer.bloom(size, light, bloom),
@@ -46,9 +56,7 @@ impl Renderer {
                 spread_light(size, light, bloom);
                 Ok(())
             }
-        }?;
-        image.mark_bloomed(Some(*bloom));
-        Ok(())
+        }
     }
 
     /// Returns the bloom that a frame is to have.

@@ -3,6 +3,7 @@
 mod bloom;
 mod device;
 mod host;
+mod layers;
 mod one;
 mod referenced;
 mod several;
@@ -15,10 +16,10 @@ pub use device::{Device, Devices};
 
 use crate::cost::FrameCost;
 use crate::error::{Error, Result, SceneError};
-use crate::image::{RadianceImage, kept_image, spread_light};
+use crate::image::{Bloom, RadianceImage, kept_image, spread_light};
 use crate::opencl::{MappedFilm, RendererOptions};
 use crate::reference::{self, Tracer};
-use crate::scene::{CheckedSources, Ray, Scene};
+use crate::scene::{CheckedSources, DepthLayers, Ray, Scene};
 use device::Backend;
 use one::{DeviceRenderer, Rows};
 use referenced::{draw_reference, reference_cost};
@@ -54,6 +55,12 @@ pub struct Renderer {
     checked: Option<CheckedSources>,
     /// Whether frames have the bloom of their scene's display.
     spreads_bloom: bool,
+    /// The depths, finer than pixels, that were taken apart last.
+    layers: Option<DepthLayers>,
+    /// What parts of the last frame cost that were drawn before its last part.
+    cost_before: FrameCost,
+    /// An image that is put together of parts, and lent.
+    kept: Option<RadianceImage>,
 }
 
 #[derive(Debug)]
@@ -119,6 +126,9 @@ impl Renderer {
             backend,
             checked: None,
             spreads_bloom: false,
+            layers: None,
+            cost_before: FrameCost::default(),
+            kept: None,
         }
     }
 
@@ -160,13 +170,8 @@ impl Renderer {
             RendererBackend::Several(_) | RendererBackend::Reference { .. } => 0,
         };
         let mut image = RadianceImage::beside(scene.image, beside)?;
-        let all = Rows {
-            rows: 0..scene.image.height,
-            target: image.as_mut_slice(),
-            stride: 4 * scene.image.width as usize,
-            bloom,
-        };
-        self.draw(scene, all, progress)?;
+        let light = image.as_mut_slice();
+        self.draw(scene, whole(scene, light, bloom), progress)?;
         image.mark_bloomed(bloom);
         Ok(image)
     }
@@ -186,12 +191,7 @@ impl Renderer {
                 scene.image.height
             )));
         }
-        let all = Rows {
-            rows: 0..scene.image.height,
-            target,
-            stride: 4 * scene.image.width as usize,
-            bloom: self.bloom_of(scene),
-        };
+        let all = whole(scene, target, self.bloom_of(scene));
         self.draw(scene, all, &mut |_| ControlFlow::Continue(()))
     }
 
@@ -258,6 +258,10 @@ impl Renderer {
     pub fn render_mapped(&mut self, scene: &Scene) -> Result<MappedImage<'_>> {
         self.check(scene)?;
         let bloom = self.bloom_of(scene);
+        if self.has_layers(scene)? {
+            let values = self.keep_layers(scene, bloom)?;
+            return Ok(MappedImage(MappedBackend::Host(values)));
+        }
         match &mut self.backend {
             RendererBackend::OpenCl(renderer) => {
                 let mapped = renderer.render_mapped(scene, bloom)?;
@@ -285,6 +289,10 @@ impl Renderer {
     /// Returns what the last frame cost.
     #[must_use]
     pub fn last_cost(&self) -> FrameCost {
+        self.cost_before.then(self.cost_of_part())
+    }
+
+    fn cost_of_part(&self) -> FrameCost {
         match &self.backend {
             RendererBackend::OpenCl(renderer) => renderer.cost(),
             RendererBackend::Several(renderer) => renderer.cost(),
@@ -324,10 +332,23 @@ impl Renderer {
 
     /// Checks a scene; its sources only if they changed.
     fn check(&mut self, scene: &Scene) -> Result<()> {
+        self.cost_before = FrameCost::default();
         scene.validate_again(&mut self.checked)
     }
 
     fn draw(
+        &mut self,
+        scene: &Scene,
+        wanted: Rows<'_>,
+        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<()> {
+        match self.has_layers(scene)? {
+            true => self.draw_layers(scene, wanted, progress),
+            false => self.draw_part(scene, wanted, progress),
+        }
+    }
+
+    fn draw_part(
         &mut self,
         scene: &Scene,
         wanted: Rows<'_>,
@@ -355,6 +376,16 @@ impl Renderer {
             RendererBackend::OpenCl(renderer) => Some(renderer.wave()),
             RendererBackend::Several(_) | RendererBackend::Reference { .. } => None,
         }
+    }
+}
+
+/// Returns all rows of a scene's image.
+fn whole<'a>(scene: &Scene, target: &'a mut [f32], bloom: Option<Bloom>) -> Rows<'a> {
+    Rows {
+        rows: 0..scene.image.height,
+        target,
+        stride: 4 * scene.image.width as usize,
+        bloom,
     }
 }
 

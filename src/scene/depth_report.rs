@@ -35,7 +35,8 @@ impl Scene {
     #[must_use]
     pub fn depth_report(&self) -> Option<DepthReport> {
         let depth = self.depth.as_ref()?;
-        let counts = Counts::of(depth, &self.view_plane(), self.image);
+        let plane = ViewPlane::new(&self.camera, depth.size(), self.ray_length());
+        let counts = Counts::of(depth, &plane, depth.size());
         let share = |count: usize| count as f64 / counts.pixels.max(1) as f64;
         Some(DepthReport {
             channel: depth.channel().map(str::to_owned),

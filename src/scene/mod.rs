@@ -19,6 +19,7 @@ macro_rules! keys {
 mod camera;
 pub(crate) mod chain;
 mod colors;
+mod depth_layers;
 #[cfg(feature = "files")]
 mod depth_report;
 mod exposure;
@@ -31,6 +32,7 @@ mod integration;
 #[cfg(feature = "files")]
 pub mod keys;
 pub(crate) mod kinds;
+mod light_group;
 mod list;
 #[cfg(feature = "files")]
 mod preset;
@@ -46,6 +48,7 @@ use glam::DVec3;
 
 pub use camera::{Camera, CameraMatrices, ClipY};
 pub use chain::{Dashes, ElectricArc};
+pub(crate) use depth_layers::DepthLayers;
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;
 #[cfg(feature = "files")]
@@ -83,7 +86,9 @@ macro_rules! define_scene {
             pub integration: Integration,
             /// How radiance becomes an 8-bit picture.
             pub display: Display,
-            /// How far each pixel's ray sees, of the size of the image; `None`: nothing hides the light.
+            /// How far each pixel's ray sees; `None`: nothing hides the light. Of the size of the image, or 2 to 8 times
+            /// as many depths across and down: pixels at the edges of things are then the mean of the light before
+            /// each surface.
             pub depth: Option<DepthImage>,
             $($(#[$doc])* pub $list: List<$Type>,)*
         }

@@ -1,5 +1,6 @@
 //! The one check of a scene's values. What passes here needs no further check, neither in packing nor in a kernel.
 
+use super::depth_layers::{FINEST, depths_across};
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, SMALLEST, finite};
 use super::{BRIGHTEST, Brightness, CORE_FLOOR, List, Measure, Scene, SourceKind, SourcesStamp};
@@ -103,13 +104,14 @@ impl Scene {
             return Ok(());
         };
         let (depth, image) = (depth.size(), self.image);
-        if depth == image {
+        if depths_across(depth, image).is_some() {
             return Ok(());
         }
         Err(Fault::new(
             "depth",
             format!(
-                "the depth image has {}x{} pixels, the image {}x{}; they must be equal",
+                "the depth image has {}x{} pixels, the image {}x{}; they must be equal, or the depths 2 to {FINEST} \
+                 times as many across and down",
                 depth.width, depth.height, image.width, image.height
             ),
         ))

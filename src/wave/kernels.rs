@@ -37,6 +37,15 @@ pub(crate) struct Task {
     pub rays: Rays,
 }
 
+impl Task {
+    /// Returns whether integrals along a ray are calls: where copies would be many, compilers take four times as long
+    /// for them, and nothing is faster. One kind by pixels has one copy.
+    fn has_calls(&self) -> bool {
+        let kinds = self.kinds.iter().filter(|is_present| **is_present).count();
+        self.rays == Rays::Tiles || kinds > 1
+    }
+}
+
 /// What kernels make of an integral.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Reduced {
@@ -198,6 +207,9 @@ fn task_definitions(workers: u32, counts_samples: bool, task: &Task, rule: &Rule
     definitions += task.film.definitions();
     if task.rays == Rays::Tiles {
         definitions += &tiles::definitions(workers);
+    }
+    if task.has_calls() {
+        definitions += " -D PER_RAY=CALL";
     }
     definitions
 }

@@ -28,6 +28,9 @@ const LEAST_LIMIT: f64 = 1e-3;
 /// That of a pixel next to a core, a mean over its square: few pixels see much of a specimen, its ends and bends.
 const MEAN_LIMIT: f64 = 1e-1;
 
+/// The distance at which light of specimens ends, where that of a task does.
+const SPECIMEN_REACH: f64 = 0.8;
+
 /// Two tiles wide and high, with room for some that are smooth.
 const SIZE: ImageSize = ImageSize {
     width: 76,
@@ -244,7 +247,10 @@ macro_rules! define_specimens {
             };
             let mut kinds = task.kinds.into_iter();
             $(if kinds.next() == Some(true) {
-                let specimen: crate::scene::$Type = SourceKind::specimen(place, profile);
+                let mut specimen: crate::scene::$Type = SourceKind::specimen(place, profile);
+                if task.has_ends && profile == Profile::InverseCube {
+                    specimen.reach = Some(SPECIMEN_REACH);
+                }
                 let is_even = task.reduced != Reduced::Sum;
                 let specimen = if is_even { specimen.evened() } else { specimen };
                 let has_series = task.has_series && profile == Profile::Inverse;

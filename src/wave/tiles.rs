@@ -54,11 +54,9 @@ const LIGHT: usize = 48;
 /// Column and row of an open tile, before its words of sources.
 const PLACE: usize = 2;
 
-/// Returns definitions for the kernels' compiler: calls instead of copies of what is needed in several places.
+/// Returns definitions for the kernels' compiler.
 pub(super) fn definitions(workers: u32) -> String {
-    format!(
-        " -D PER_RAY=CALL -D MOST_WORDS={MOST_WORDS} -D TILE_WORKERS={workers} -D TILE_SHARES={TILE_SHARES}u"
-    )
+    format!(" -D MOST_WORDS={MOST_WORDS} -D TILE_WORKERS={workers} -D TILE_SHARES={TILE_SHARES}u")
 }
 
 /// Tiles that a pass leaves open, on the device.

@@ -11,7 +11,7 @@ use crate::common::layer::{self, LAYERS, Layer};
 use crate::common::program::{Folder, SCENE, device, expect};
 use energywave::Ray;
 use energywave::image::DepthAlong;
-use energywave::scene::{Method, Reduction, Sampling};
+use energywave::scene::{Antialias, Method, Reduction, Sampling};
 use energywave::{Error, Renderer, RendererOptions, Scene};
 use glam::DVec3;
 
@@ -74,6 +74,12 @@ fn draws() -> Vec<(&'static str, Scene)> {
     let mut roots = common::squared(&with(tiles));
     roots.spheres.clear();
     roots.integration.reduction = Reduction::Rms;
+    let mut ends = with(tiles);
+    ends.tori.clear();
+    let reaching = &mut ends.spheres[0];
+    (reaching.radius, reaching.reach) = (0.1, Some(0.9));
+    let mut means = with(tiles);
+    means.integration.antialias = Antialias::Footprint;
     vec![
         ("simpson", with(Method::simpson(common::DIVISIONS))),
         ("jittered", with(jittered)),
@@ -81,6 +87,8 @@ fn draws() -> Vec<(&'static str, Scene)> {
         ("tiles", with(tiles)),
         ("depth", hidden),
         ("roots", roots),
+        ("ends", ends),
+        ("means", means),
         ("rays", lit),
     ]
 }
@@ -156,6 +164,18 @@ fn kernels_are_tested_once_for_each_device_driver_and_build() {
         let scene = &draws()[0].1;
         assert_eq!(launches("", scene).0, launches("", scene).0);
         fs::remove_file(&folder).unwrap();
+    });
+}
+
+#[test]
+fn the_kernels_that_are_tested_are_those_that_draw() {
+    alone(|| {
+        let (layer, _) = begin();
+        for (name, scene) in draws() {
+            let before = layer.calls("clBuildProgram");
+            draw(&mut renderer("", false), name, &scene).unwrap();
+            assert_eq!(layer.calls("clBuildProgram") - before, 1, "{name}");
+        }
     });
 }
 

@@ -15,6 +15,7 @@ mod convolution;
 mod convolved_paths; // holds light that adds up over a core to its definition
 mod defaults; // looks at a scene that names nothing
 mod depth; // compares occluded images with those of rays that are cut by hand
+mod depth_edges; // compares edges of what hides the light with the means of many rays
 mod exact; // holds the method `exact` to every tolerance
 mod fading; // fades light by every power, and absorbs it
 mod fading_forms; // holds the reference to closed forms of points and lines that fade

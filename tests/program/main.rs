@@ -23,7 +23,8 @@ mod examples; // runs every example
 mod figures; // draws the papers' figures
 mod groups; // has groups placed as the sources that they stand for
 #[cfg(unix)] // as cli
-mod help; // reads what the program says of itself, and types its examples
+mod help;
+mod light_groups; // reads what the program says of itself, and types its examples
 mod messages; // is told what to write instead, and nothing raw or long
 mod methods; // chooses ways to integrate, in files and by options
 #[cfg(unix)] // as cli

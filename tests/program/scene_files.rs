@@ -59,6 +59,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             reach: Some(1200.0 + number(random)),
             peak: None,
             layers: layers(random),
+            light_group: Some("far points".into()),
         });
         scene.cylinders.push(Cylinder {
             point: vector(random),
@@ -70,6 +71,7 @@ fn add_sources(scene: &mut Scene, random: &mut Rng) {
             reach: Some(1200.0 + number(random)),
             peak: None,
             layers: layers(random),
+            light_group: None,
         });
         for end in [
             BeamEnd::Cap(None),

@@ -23,6 +23,8 @@ macro_rules! define_group_table {
             translate: DVec3,
             #[serde(default)]
             repeat: Option<Repeat>,
+            #[serde(default)]
+            light_group: Option<Box<str>>,
             $(#[serde(default)] $kind: Vec<$Type>,)*
             #[serde(default)]
             group: Vec<GroupTable>,
@@ -35,6 +37,7 @@ macro_rules! define_group_table {
                     rotate: table.rotate,
                     translate: table.translate,
                     repeat: table.repeat,
+                    light_group: table.light_group,
                     $($list: table.$kind,)*
                     groups: table.group.into_iter().map(Self::from).collect(),
                 }
@@ -54,6 +57,8 @@ keys! { pub(in crate::scene) GROUP_KEYS;
     rotate: Table("rotate"), NONE, Otherwise("not turned"), "a turn about the group's origin, after the scale";
     translate: VECTOR, WORLD, Value("[0, 0, 0]"), "where the group's origin is put";
     repeat: Table("repeat"), NONE, Otherwise("once"), "copies, all of which are scaled, rotated and translated";
+    light_group: Text, NONE, Otherwise("that of the group around it, or none"),
+        "that of sources in it which name none";
 }
 
 fn one() -> f64 {

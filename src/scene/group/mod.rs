@@ -15,6 +15,7 @@ pub(super) use placement::{REPEAT_KEYS, ROTATION_KEYS};
 pub use placement::{Repeat, Rotation};
 
 use super::kinds::{KIND_COUNT, for_each_kind};
+use super::light_group::check_light_group;
 use super::source::*;
 use super::values::{Checked, direction, finite, positive, vector};
 use super::{List, Measure, Reduction, Scene};
@@ -56,6 +57,8 @@ macro_rules! define_group {
             pub translate: DVec3,
             /// Copies, all of which are scaled, rotated and translated.
             pub repeat: Option<Repeat>,
+            /// The group of lights of sources in it, and in groups within, that name none.
+            pub light_group: Option<Box<str>>,
             $($(#[$doc])* pub $list: Vec<$Type>,)*
             /// Groups within this one, at most 8 deep.
             pub groups: Vec<Group>,
@@ -68,6 +71,7 @@ macro_rules! define_group {
                     rotate: None,
                     translate: DVec3::ZERO,
                     repeat: None,
+                    light_group: None,
                     $($list: Vec::new(),)*
                     groups: Vec::new(),
                 }
@@ -91,10 +95,14 @@ macro_rules! define_group {
                 Ok(())
             }
 
-            /// Adds its own sources to a scene.
-            fn place_sources(&self, place: &Placement, scene: &mut Scene) {
+            /// Adds its own sources to a scene; those that name no group of lights to this one.
+            fn place_sources(&self, place: &Placement, light_group: Option<&str>, scene: &mut Scene) {
                 $(if !self.$list.is_empty() {
-                    scene.$list.extend(self.$list.iter().map(|source| source.placed(place)));
+                    scene.$list.extend(self.$list.iter().map(|source| {
+                        let mut placed = source.placed(place);
+                        light_group.into_iter().for_each(|group| placed.join(group));
+                        placed
+                    }));
                 })*
             }
         }
@@ -168,23 +176,26 @@ impl Group {
             direction("rotate.axis", rotation.axis)?;
             finite("rotate.angle", rotation.angle)?;
         }
+        let light_group = self.light_group.as_deref();
+        light_group.map_or(Ok(()), check_light_group)?;
         self.repeat.map_or(Ok(()), |repeat| repeat.check())
     }
 
     /// Adds all that it makes to a scene, its own space put into the scene's by `place`.
-    fn place(&self, place: &Placement, scene: &mut Scene) {
+    fn place(&self, place: &Placement, light_group: Option<&str>, scene: &mut Scene) {
         if self.counts() == [0; KIND_COUNT] {
             return;
         }
+        let light_group = self.light_group.as_deref().or(light_group);
         let own = self.own_placement().then(place);
         for copy in 0..self.copies() {
             let place = match &self.repeat {
                 Some(repeat) => repeat.placement(copy).then(&own),
                 None => own,
             };
-            self.place_sources(&place, scene);
+            self.place_sources(&place, light_group, scene);
             for group in &self.groups {
-                group.place(&place, scene);
+                group.place(&place, light_group, scene);
             }
         }
     }
@@ -227,7 +238,7 @@ impl Scene {
         }
         reserve(self, counts)?;
         for group in groups {
-            group.place(&Placement::NONE, self);
+            group.place(&Placement::NONE, None, self);
         }
         Ok(())
     }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{Brightness, Light, Profile, Shared, item};
 use crate::scene::colors::read_some_color;
+use crate::scene::light_group::check_light_group;
 use crate::scene::values::{Checked, Fault, finite, vector};
 
 /// More layers than this hardly differ.
@@ -67,6 +68,7 @@ impl Layer {
             reach: self.reach.or(source.reach),
             peak,
             layers: &[],
+            light_group: None,
             adds_up: source.adds_up,
         }
     }
@@ -110,6 +112,7 @@ impl Shared<'_> {
         brightness: &Brightness,
         strongest: &dyn Fn(&Light) -> f64,
     ) -> Checked {
+        self.light_group.map_or(Ok(()), check_light_group)?;
         let count = self.layers.len();
         if count == 0 {
             return brightness.check_light(self, strongest);

@@ -118,6 +118,9 @@ macro_rules! source_struct {
                 deserialize_with = "crate::scene::source::read_layers"
             )]
             pub layers: Vec<$crate::scene::Layer>,
+            /// The group of lights that it is counted to ([`Scene::light_groups`](crate::Scene::light_groups)).
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub light_group: Option<Box<str>>,
         }
 
         impl $crate::scene::source::HasLight for $Type {
@@ -131,8 +134,13 @@ macro_rules! source_struct {
                     reach: self.reach,
                     peak: self.peak,
                     layers: &self.layers,
+                    light_group: self.light_group.as_deref(),
                     adds_up: false,
                 }
+            }
+
+            fn join(&mut self, light_group: &str) {
+                self.light_group.get_or_insert_with(|| light_group.into());
             }
 
             fn scale(&mut self, scale: f64) {
@@ -154,6 +162,8 @@ keys! { pub(in crate::scene) SHARED_KEYS;
     reach: POSITIVE, WORLD, Otherwise("nowhere"), "the distance at which the light ends, more than the radius";
     peak: ANY, NONE, Otherwise("none"), "in the place of coefficient: the light of a ray straight across the core";
     layers: Tables("layers"), NONE, Otherwise("one light"), "several lights of this core, whose sum it is";
+    light_group: Text, NONE, Otherwise("that of its group, or none"),
+        "a name; an EXR has a layer for each on request (--light-groups)";
 }
 
 // What is read besides of cores along which light may change.
@@ -190,6 +200,7 @@ macro_rules! source {
             reach: other.reach,
             peak: other.peak,
             layers: other.layers.to_vec(),
+            light_group: other.light_group.map(Into::into),
             $($fields)*
         }
     }};
@@ -206,6 +217,7 @@ pub(crate) struct Shared<'a> {
     pub reach: Option<f64>,
     pub peak: Option<f64>,
     pub layers: &'a [Layer],
+    pub light_group: Option<&'a str>,
     /// Whether its core can be added up (`Profile::Convolution`).
     pub adds_up: bool,
 }
@@ -230,6 +242,7 @@ impl Default for Shared<'_> {
             reach: None,
             peak: None,
             layers: &[],
+            light_group: None,
             adds_up: false,
         }
     }
@@ -328,6 +341,9 @@ impl<'a> Shared<'a> {
 pub(crate) trait HasLight {
     /// Returns what they say.
     fn shared(&self) -> Shared<'_>;
+
+    /// Counts it to a group of lights, unless it names one.
+    fn join(&mut self, light_group: &str);
 
     /// Multiplies the lengths among them.
     fn scale(&mut self, scale: f64);

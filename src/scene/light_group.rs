@@ -1,0 +1,72 @@
+//! Groups of lights: sources whose light is also drawn by itself, for a program that mixes it anew.
+
+use super::kinds::for_each_kind;
+use super::source::HasLight;
+use super::values::{Checked, Fault};
+use super::{List, Scene};
+use crate::shown::shown;
+
+/// A longer name, with that of a channel, is more than some programs read.
+const LONGEST: usize = 60;
+
+/// Checks the name of a group of lights, which becomes a part of channels' names.
+pub(super) fn check_light_group(name: &str) -> Checked {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, ' ' | '_' | '-');
+    let is_good = !name.trim().is_empty() && name.len() <= LONGEST && name.chars().all(is_plain);
+    if is_good {
+        return Ok(());
+    }
+    let message = format!(
+        "`{}`; a name has 1 to {LONGEST} of the letters a to z, digits, spaces, - and _",
+        shown(name)
+    );
+    Err(Fault::new("light_group", message))
+}
+
+macro_rules! define_light_groups {
+    ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
+        impl Scene {
+            /// Calls `see` with the group of lights of every source.
+            fn for_each_light_group<'a>(&'a self, see: &mut dyn FnMut(Option<&'a str>)) {
+                $(self.$list.iter().for_each(|source| see(source.shared().light_group));)*
+            }
+
+            /// Returns the scene with the sources of one group of lights alone, or with `None` those of no group, seen
+            /// along the same rays. Light adds: the images of all groups, and of none, add up to that of the scene.
+            #[must_use]
+            pub fn of_light_group(&self, group: Option<&str>) -> Self {
+                let mut scene = Self::new(self.camera.clone());
+                scene.camera.ray_length = Some(self.ray_length());
+                (scene.image, scene.decay, scene.absorption) = (self.image, self.decay, self.absorption);
+                (scene.integration, scene.display) = (self.integration, self.display.clone());
+                scene.depth = self.depth.clone();
+                $(scene.$list = kept(&self.$list, group);)*
+                scene
+            }
+        }
+    };
+}
+for_each_kind!(define_light_groups);
+
+fn kept<T: HasLight + Clone>(list: &List<T>, group: Option<&str>) -> List<T> {
+    let is_of_it = |source: &&T| source.shared().light_group == group;
+    list.iter().filter(is_of_it).cloned().collect()
+}
+
+impl Scene {
+    /// Returns the names of its groups of lights, in the order of the alphabet.
+    #[must_use]
+    pub fn light_groups(&self) -> Vec<&str> {
+        let mut names = std::collections::BTreeSet::new();
+        self.for_each_light_group(&mut |group| names.extend(group));
+        names.into_iter().collect()
+    }
+
+    /// Returns whether there are sources of no group of lights.
+    #[must_use]
+    pub fn has_ungrouped_light(&self) -> bool {
+        let mut has = false;
+        self.for_each_light_group(&mut |group| has |= group.is_none());
+        has
+    }
+}
