@@ -2,7 +2,7 @@
 //! and in that of a GPU, and no light is lost. Spoiled: another weight of the middle.
 
 use crate::common::{self, lane_widths};
-use energywave::image::{Bloom, ImageSize};
+use energywave::image::{Bloom, DepthAlong, DepthImage, ImageSize};
 use energywave::internals::{Compute, DeviceForm, Film, FilmFormat, Spreader, discover};
 use energywave::{Device, RadianceImage, Renderer, RendererOptions, Scene};
 
@@ -272,5 +272,28 @@ fn a_renderer_spreads_the_bloom_of_its_scene_where_it_is_told_to() {
         renderer
             .render_rows(&scene, 0..9, &mut rows, stride)
             .unwrap();
+    }
+}
+
+#[test]
+fn a_bloom_is_of_all_that_is_seen_where_depths_are_finer_than_pixels() {
+    let mut scene = scene();
+    let (width, height) = (2 * scene.image.width, 2 * scene.image.height);
+    let size = ImageSize { width, height };
+    let depth = |index: usize| match index % width as usize {
+        0..98 => 3.0,
+        _ => f32::INFINITY,
+    };
+    let depths = (0..size.pixels()).map(depth).collect();
+    scene.depth = Some(DepthImage::new(size, DepthAlong::Ray, depths).unwrap());
+    let bloom = scene.display.bloom.unwrap();
+    let mut renderer = Renderer::new(&common::device()).unwrap();
+    let before = renderer.render(&scene).unwrap();
+    let expected = before.bloomed(&bloom).unwrap();
+    assert!(off(pixels(&before), &expected) > 0.01);
+    renderer.spread_bloom(true);
+    for (way, found) in rendered(&mut renderer, &scene) {
+        let worst = off(found.as_chunks().0, &expected);
+        assert!(worst <= ROUNDING, "{way}: {worst:e}");
     }
 }
