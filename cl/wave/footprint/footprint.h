@@ -7,10 +7,13 @@
 #include "../source/quadratic.h"
 #include "closest.h"
 #include "mean.h"
+#include "reach.h"
 
 // So many pixels from a core, the ray through the centre gets the mean.
 #define FOOTPRINT_END 6.0f
 #define FOOTPRINT_END_OF_INVERSE 1.5f
+// Where light ends closer than this, it curves all the way.
+#define CLOSE_REACH 24.0f
 // So thick a core, in pixels, does not vary over one.
 #define FOOTPRINT_THICK 3.0f
 // No ray passes a core closer than this; by so much farther off does the second ray.
@@ -71,7 +74,14 @@ INLINE void take_core(Footprint *const footprint, const CoreSeen *const seen, co
     }
     const floatv pass =
         IS_GAUSSIAN(light) ? min(distance, 5.0f * thickness) : max(distance, LEAST_PASS - min(thickness, LEAST_PASS));
-    const floatv at_pass = light_across(light, pass);
+    floatv at_pass = light_across(light, pass);
+#ifdef SHAPES
+    if (light->has_end) {
+        const Taken taken = taken_at_reach(light, distance, seen->is_point);
+        mean -= taken.here + taken.of_mean;
+        at_pass -= taken_at_reach(light, pass, seen->is_point).here;
+    }
+#endif
     put_ray(footprint, 0, seen, pass, is_near);
     floatv weight = mean * inverse(at_pass);
     if (IS_INVERSE(light->profile)) {
@@ -95,13 +105,22 @@ INLINE Footprint footprint_of(const View *const view, const Ray *const ray, cons
     const floatv softening2 = ray->softening2 + closest->thickness2 + falloff->radius2;
     const floatv thickness2 = IS_BARE(profile) ? splat(falloff->radius2) : softening2;
     const floatv thickness = max(0.5f * twice_sqrt(max(thickness2, 1e-36f)) * seen.per_length, LEAST_THICKNESS);
-    const float end = IS_INVERSE(profile) ? FOOTPRINT_END_OF_INVERSE : FOOTPRINT_END;
     const intv is_met = (closest->s > 0.0f) & (closest->s < ray->end);
     // Not the offset: where a ray runs along a core, the core may be far ahead.
     const floatv apart2 = dot3(closest->beside, closest->beside) * seen.per_length * seen.per_length;
-    const intv is_near = is_met & (apart2 < end * end) & (thickness < FOOTPRINT_THICK);
+    const float end = IS_INVERSE(profile) ? FOOTPRINT_END_OF_INVERSE : FOOTPRINT_END;
+    Across light = {profile, profile == 4u ? SMEARED_THICKNESS * thickness : thickness, false, splat(0.0f)};
+    floatv end2 = splat(end * end);
+#ifdef SHAPES
+    light.has_end = (profile == 1u || profile == 2u) && falloff->reach2 > 0.0f;
+    if (light.has_end) {
+        const floatv reach2 = falloff->reach2 * seen.per_length * seen.per_length;
+        light.per_reach2 = inverse(reach2);
+        end2 = select(end2, REACH_SHARE * REACH_SHARE * reach2, reach2 < CLOSE_REACH * CLOSE_REACH);
+    }
+#endif
+    const intv is_near = is_met & (apart2 < end2) & (thickness < FOOTPRINT_THICK);
     if (any_lane(is_near)) {
-        const Across light = {profile, profile == 4u ? SMEARED_THICKNESS * thickness : thickness};
         take_core(&footprint, &seen, &light, is_near);
         footprint.is_center = false;
     }

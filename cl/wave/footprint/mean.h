@@ -32,6 +32,8 @@ floatv arctangent_of(const floatv x, const floatv y) {
 typedef struct {
     uint profile;     // as types.h says
     floatv thickness; // b; of a Gaussian its standard deviation
+    bool has_end;     // of 1/q^2 and 1/q^3: whether it ends at a reach
+    floatv per_reach2;
 } Across;
 
 // So thick a core is at least, in pixels: the mean of 1/q^2 and 1/q^3 over a bare one is infinite.
