@@ -105,8 +105,8 @@ fn means(scene: &Scene) -> RadianceImage {
     image
 }
 
-/// Light below this share of the brightest is measured by it; where light ends it may do so within a pixel, of which one
-/// ray tells nothing.
+/// Light below this share of the brightest is measured by it; where light ends it may do so within a pixel, of which
+/// one ray tells nothing.
 const LEAST_LIGHT: f32 = 1e-6;
 const LEAST_BEFORE_END: f32 = 1e-2;
 
