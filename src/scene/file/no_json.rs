@@ -1,12 +1,11 @@
 //! Scenes as JSON, where the library was built without the feature `json`.
 
-use std::path::Path;
-
-use super::{Adjust, Read};
+use super::SceneFile;
+use super::moving::Moving;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
-pub(super) fn read(_: &str, _: &Path, _: Adjust<'_>) -> Result<Read> {
+pub(super) fn read(_: &str) -> Result<(SceneFile, Moving)> {
     Err(missing())
 }
 
