@@ -6,10 +6,11 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
+pub use crate::bloom::{BloomStep, Spreader};
 pub use crate::opencl::{
-    Argument, Compute, DeviceBuffer, DeviceStruct, Discovery, Film, FilmFormat, FilmPart, Kernel,
-    OpenClDevice, Pixel, Program, SHARED, Sources, StoredDepths, StructLayout, Uploaded, discover,
-    host_depth_definitions,
+    Argument, Compute, DeviceBuffer, DeviceForm, DeviceStruct, Discovery, Film, FilmFormat,
+    FilmPart, Kernel, OpenClDevice, Pixel, Program, SHARED, Sources, StoredDepths, StructLayout,
+    Uploaded, discover, host_depth_definitions,
 };
 pub use crate::reference::{
     CurveField, Field, Integrand, Sample, Source, b_spline, exact, integrate, simpson, sources,
@@ -17,6 +18,7 @@ pub use crate::reference::{
 pub use crate::scene::ViewPlane;
 pub use crate::wave::{Rule, Split, TILE_SHARES, Wave, pack};
 
+use crate::bloom;
 use crate::error::{Error, Result};
 use crate::opencl::{RendererOptions, run_time};
 use crate::render::Renderer;
@@ -152,6 +154,19 @@ pub fn build_text(
     let text = wave::resolve_text(name, text, &present(kinds));
     let definitions = wave::common_definitions(options.counts_samples);
     Program::build(compute, text, &definitions, options)
+}
+
+/// Builds a text that may include files of `cl/bloom/`, as [`build_text`] does with those of the wave.
+///
+/// # Errors
+/// As there.
+pub fn build_bloom_text(
+    compute: &Compute,
+    name: &str,
+    text: &str,
+    options: &RendererOptions,
+) -> Result<Program> {
+    bloom::build_text(compute, name, text, options)
 }
 
 /// Runs a kernel over `items` work-items, in groups of `group`, waits for it, and returns how long the device worked.

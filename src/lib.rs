@@ -45,6 +45,7 @@
 //! and tone mapping on all cores), `papers` (the papers' tables), `cli` (the program, with all of these).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod bloom;
 mod cost;
 mod error;
 pub mod image;

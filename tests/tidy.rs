@@ -60,14 +60,18 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 9] = [
+const LAYERS: [(&str, &[&str]); 10] = [
     ("image", &[]),
     ("opencl", &[]),
+    ("bloom", &["image", "opencl"]),
     ("scene", &["image"]),
     ("reference", &["image", "scene"]),
     // The self-test compares with the reference.
     ("wave", &["image", "opencl", "scene", "reference"]),
-    ("render", &["image", "opencl", "scene", "reference", "wave"]),
+    (
+        "render",
+        &["image", "opencl", "bloom", "scene", "reference", "wave"],
+    ),
     (
         "papers",
         &["image", "opencl", "scene", "reference", "render"],
@@ -75,7 +79,7 @@ const LAYERS: [(&str, &[&str]); 9] = [
     ("verify", &["scene", "reference", "render"]),
     (
         "internals",
-        &["opencl", "scene", "reference", "wave", "render"],
+        &["opencl", "bloom", "scene", "reference", "wave", "render"],
     ),
 ];
 const BELOW_ALL: [&str; 11] = [
@@ -185,7 +189,12 @@ fn every_kind_has_its_four_files_and_no_other_file_lists_the_kinds() {
 
 #[test]
 fn every_file_of_cl_is_embedded_once() {
-    let lists = text_of("src/wave/kinds.rs") + &text_of("src/opencl/source.rs");
+    let lists = [
+        "src/wave/kinds.rs",
+        "src/bloom/sources.rs",
+        "src/opencl/source.rs",
+    ];
+    let lists = lists.map(text_of).concat();
     for (path, _) in files("cl", &["h", "cl"]) {
         let name = path.strip_prefix("cl").unwrap().to_str().unwrap();
         // Headers of kinds are embedded by their rows.
@@ -207,7 +216,6 @@ fn unsafe_has_one_home() {
         "src/opencl/",
         "src/internals.rs",
         "src/render/host.rs",
-        "src/render/one.rs",
         "src/main.rs",
     ];
     for (path, text) in files("src", &["rs"]) {

@@ -42,6 +42,9 @@ pub fn run(arguments: RenderArguments) -> Outcome {
     let begun = Instant::now();
     let mut progress = Progress::new();
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
+    let is_auto = scene.display.exposure == Exposure::Auto;
+    // An exposure that fits is that of the light before its bloom.
+    renderer.spread_bloom(!is_auto);
     let parts = 1.0 + groups.len() as f32;
     let mut drawn_parts = 0.0;
     let mut draw = |scene: &Scene| {
@@ -50,8 +53,8 @@ pub fn run(arguments: RenderArguments) -> Outcome {
         drawn_parts += 1.0;
         image
     };
-    let image = draw(&scene)?;
-    let layers = groups
+    let mut image = draw(&scene)?;
+    let mut layers = groups
         .into_iter()
         .map(|(name, scene)| Ok((name, draw(&scene)?)))
         .collect::<Result<Vec<_>, Error>>()?;
@@ -59,12 +62,18 @@ pub fn run(arguments: RenderArguments) -> Outcome {
     if was_interrupted() {
         return Err(Error::Interrupted.into());
     }
-    let took = begun.elapsed();
-    if scene.display.exposure == Exposure::Auto {
+    if is_auto {
         let stops = image.auto_exposure();
         scene.display.exposure = stops.into();
         note(&format!("exposure: {stops:.2} stops, by auto"));
+        if let Some(bloom) = &scene.display.bloom {
+            renderer.bloom(&mut image, bloom)?;
+            for (_, layer) in &mut layers {
+                renderer.bloom(layer, bloom)?;
+            }
+        }
     }
+    let took = begun.elapsed();
     let output = noted(output, &arguments.scene, &scene, &devices);
     match layers.as_slice() {
         [] => output.write(&image, &scene.display)?,

@@ -1,10 +1,14 @@
 //! Linear radiance to an sRGB picture: bloom, background, exposure, tone mapping, alpha, sRGB encoding, dither.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use super::bloom::Glow;
 use super::srgb::srgb_encode;
 use super::{Background, Bloom, DisplayImage, Exposure, RadianceImage, ToneMap};
+#[cfg(feature = "files")]
+use crate::error::Result;
 use crate::threads;
 
 /// How linear radiance becomes a picture. Structs may get further fields: write `..Display::default()`.
@@ -18,7 +22,8 @@ pub struct Display {
     pub alpha: Alpha,
     /// What is behind the light; a file then holds both, and is opaque.
     pub background: Option<Background>,
-    /// Light that is spread around what is bright; of the scene's light alone, not of a background's.
+    /// Light that is spread around what is bright; of the scene's light alone, not of a background's, and of none that
+    /// [has a bloom](RadianceImage::bloom) already.
     pub bloom: Option<Bloom>,
     /// Bits of a channel: 8 or 16 of a PNG, 16 or 32 (floats) of an EXR. `None`: 8, and 32 of an EXR.
     pub bits: Option<u32>,
@@ -54,24 +59,31 @@ impl RadianceImage {
         let (channels, bits) = (3 + usize::from(has_alpha), display.bits.unwrap_or(8));
         let bytes = usize::from(bits == 16) + 1;
         let film = Film::new(self, display);
+        let white = if bytes == 1 { 255.0 } else { 65535.0 };
+        let store = |(column, row): (usize, usize), shown: Shown, pixel: &mut [u8]| match bytes {
+            1 => {
+                let threshold = gradient_noise(column, row);
+                for (byte, value) in pixel.iter_mut().zip(stored(shown, white)) {
+                    *byte = (value + threshold) as u8;
+                }
+            }
+            _ => {
+                let values = stored(shown, white);
+                for (pair, value) in pixel.chunks_exact_mut(2).zip(values) {
+                    pair.copy_from_slice(&((value + 0.5) as u16).to_ne_bytes());
+                }
+            }
+        };
         let width = self.size.width as usize;
-        let mut data = vec![0_u8; bytes * channels * self.size.pixels()];
-        threads::for_each_chunk(&mut data, bytes * channels, |i, pixel| {
-            let white = if bytes == 1 { 255.0 } else { 65535.0 };
-            let shown = film.shown(i, white);
-            match bytes {
-                1 => {
-                    let threshold = gradient_noise(i % width, i / width);
-                    for (byte, value) in pixel.iter_mut().zip(stored(shown, white)) {
-                        *byte = (value + threshold) as u8;
-                    }
-                }
-                _ => {
-                    let values = stored(shown, white);
-                    for (pair, value) in pixel.chunks_exact_mut(2).zip(values) {
-                        pair.copy_from_slice(&((value + 0.5) as u16).to_ne_bytes());
-                    }
-                }
+        let pixel_bytes = bytes * channels;
+        let mut data = vec![0_u8; pixel_bytes * self.size.pixels()];
+        threads::for_each_chunk(&mut data, pixel_bytes * width, |row, pixels| {
+            let light = film.row(row);
+            let pixels = pixels.chunks_exact_mut(pixel_bytes);
+            for (column, (pixel, light)) in pixels.zip(light.chunks_exact(4)).enumerate() {
+                let light = [light[0], light[1], light[2]];
+                let shown = film.shown(row * width + column, light, white);
+                store((column, row), shown, pixel);
             }
         });
         DisplayImage {
@@ -85,7 +97,7 @@ impl RadianceImage {
 
 /// An image, and what a display makes of it.
 pub(super) struct Film<'a> {
-    image: &'a RadianceImage,
+    image: Cow<'a, RadianceImage>,
     display: &'a Display,
     gain: f32,
     glow: Option<Glow>,
@@ -93,19 +105,35 @@ pub(super) struct Film<'a> {
 
 impl<'a> Film<'a> {
     pub(super) fn new(image: &'a RadianceImage, display: &'a Display) -> Self {
-        let bloom = display.bloom.filter(|bloom| bloom.strength > 0.0);
+        let bloom = display.bloom_of(image);
         Self {
-            image,
+            image: Cow::Borrowed(image),
             display,
             gain: display.exposure.stops(image).exp2() as f32,
-            glow: bloom.map(|bloom| Glow::new(image, &bloom)),
+            glow: bloom.map(|bloom| Glow::new(image.size, &image.data, &bloom)),
         }
     }
 
-    /// Returns linear RGBA before exposure and tone mapping: colour times alpha, over the background if there is one.
+    /// Spreads the light of all pixels at once, for [`pixel`](Self::pixel).
+    #[cfg(feature = "files")]
+    pub(super) fn with_bloom(image: &'a RadianceImage, display: &'a Display) -> Result<Self> {
+        Ok(Self {
+            image: match display.bloom_of(image) {
+                Some(bloom) => Cow::Owned(image.bloomed(&bloom)?),
+                None => Cow::Borrowed(image),
+            },
+            display,
+            gain: display.exposure.stops(image).exp2() as f32,
+            glow: None,
+        })
+    }
+
+    /// Returns linear RGBA before exposure and tone mapping: colour times alpha, over the background if there is one. A
+    /// bloom the image has already.
     #[cfg(feature = "files")]
     pub(super) fn pixel(&self, index: usize) -> [f32; 4] {
-        let (light, alpha) = (self.light(index), self.image.data[4 * index + 3]);
+        let [red, green, blue, alpha] = [0, 1, 2, 3].map(|it| self.image.data[4 * index + it]);
+        let light = [red, green, blue];
         let hidden = match self.display.alpha {
             Alpha::Luminance => most(self.map(light)),
             Alpha::Opaque | Alpha::Additive => 0.0,
@@ -128,17 +156,23 @@ impl<'a> Film<'a> {
             .apply(light.map(|channel| self.gain * channel))
     }
 
-    fn light(&self, index: usize) -> [f32; 3] {
+    /// Returns the light of a row, 4 values a pixel.
+    fn row(&self, row: usize) -> Cow<'_, [f32]> {
+        let values = 4 * self.image.size.width as usize;
+        let light = &self.image.data[row * values..(row + 1) * values];
         match &self.glow {
-            Some(glow) => glow.light(self.image, index),
-            None => [0, 1, 2].map(|channel| self.image.data[4 * index + channel]),
+            Some(glow) => {
+                let mut light = light.to_vec();
+                glow.give(row, &mut light);
+                light.into()
+            }
+            None => light.into(),
         }
     }
 
     /// Tone-maps a pixel, over its background: light before its exposure where that is light, too. What it hides is a
     /// whole number of steps, of which `white` make 1: so a picture is what a file without a background gives over it.
-    fn shown(&self, index: usize, white: f32) -> Shown {
-        let light = self.light(index);
+    fn shown(&self, index: usize, light: [f32; 3], white: f32) -> Shown {
         let color = self.map(light);
         let hidden = match self.display.alpha {
             Alpha::Luminance => (white * most(color)).ceil() / white,
@@ -160,6 +194,12 @@ impl<'a> Film<'a> {
 }
 
 impl Display {
+    /// Returns the bloom that an image is still to have.
+    pub(super) fn bloom_of(&self, image: &RadianceImage) -> Option<Bloom> {
+        let is_due = |bloom: &Bloom| bloom.strength > 0.0 && image.bloom.is_none();
+        self.bloom.filter(is_due)
+    }
+
     /// Returns whether a file says how much its light hides.
     pub(super) fn has_alpha(&self) -> bool {
         self.alpha != Alpha::Opaque && self.background.is_none()

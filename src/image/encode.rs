@@ -25,7 +25,7 @@ pub(super) fn exr(
     writer: &mut dyn Sink,
 ) -> Result<(), Fault> {
     let size = image.size();
-    let film = Film::new(image, display);
+    let film = Film::with_bloom(image, display)?;
     let extent = Vec2(size.width as usize, size.height as usize);
     let pixel = |place: Vec2<usize>| {
         let index = place.flat_index_for_size(extent);
@@ -73,7 +73,11 @@ pub(super) fn exr_of_groups(
             channels.push(AnyChannel::new(name, samples(film, channel)));
         }
     };
-    add(&Film::new(image, display), "", &["R", "G", "B", "A"]);
+    add(
+        &Film::with_bloom(image, display)?,
+        "",
+        &["R", "G", "B", "A"],
+    );
     // What they lie over is in the image, once.
     let alone = Display {
         background: None,
@@ -82,7 +86,7 @@ pub(super) fn exr_of_groups(
     };
     for (name, image) in groups {
         add(
-            &Film::new(image, &alone),
+            &Film::with_bloom(image, &alone)?,
             &format!("{name}."),
             &["R", "G", "B"],
         );

@@ -83,8 +83,8 @@ impl ImageFile {
     /// A file that is there keeps its mode and its owner.
     ///
     /// # Errors
-    /// [`Error::Scene`] if the format cannot hold it ([`ImageFormat::check`]); [`Error::Output`] if the disk is full or
-    /// nobody reads the pipe; nothing is left behind then.
+    /// [`Error::Scene`] if the format cannot hold it ([`ImageFormat::check`]); [`Error::Output`] if the disk is full,
+    /// nobody reads the pipe or the host has too little memory for the bloom of an EXR; nothing is left behind then.
     pub fn write(self, image: &RadianceImage, display: &Display) -> Result<()> {
         self.format.check(display)?;
         if self.format == ImageFormat::Exr {

@@ -29,6 +29,7 @@ mod tone_map;
 
 pub use background::{Background, BackgroundImage};
 pub use bloom::Bloom;
+pub(crate) use bloom::{Axis, spread_light};
 pub use clip::{ClipDepth, ClipRange};
 pub(crate) use clip::{axis_of, check_matrix, rows};
 pub use compare::{Difference, compare, relative_errors};
@@ -52,6 +53,8 @@ use crate::memory;
 pub struct RadianceImage {
     size: ImageSize,
     data: Vec<f32>,
+    /// That its light has already.
+    bloom: Option<Bloom>,
 }
 
 impl RadianceImage {
@@ -85,7 +88,16 @@ impl RadianceImage {
             ))
         })?;
         data.resize(values, 0.0);
-        Ok(Self { size, data })
+        Ok(Self {
+            size,
+            data,
+            bloom: None,
+        })
+    }
+
+    /// Says which bloom its light has.
+    pub(crate) fn mark_bloomed(&mut self, bloom: Option<Bloom>) {
+        self.bloom = bloom;
     }
 
     /// Returns width and height in pixels.

@@ -249,6 +249,16 @@ impl Film {
         })
     }
 
+    /// Returns the arguments of a launch on all pixels of an image, which finds there what engines have drawn and
+    /// finishes it.
+    ///
+    /// # Errors
+    /// As [`Film::arguments`].
+    pub(crate) fn drawn(&mut self, compute: &Compute, size: (u32, u32)) -> Result<FilmArguments> {
+        self.origin = 0;
+        self.arguments(compute, &(0..size.0 * size.1), size, false, true)
+    }
+
     pub(super) fn pixels(&self) -> Result<&DeviceBuffer<Pixel>> {
         self.pixels
             .as_ref()
@@ -271,6 +281,18 @@ impl Film {
             }
             Target::OwnImage(image) => read_image(compute, image, target),
             _ => self.pixels()?.read(compute, target),
+        }
+    }
+
+    /// Copies pixels of the host to the beginning of the buffer, and waits for it.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`] if the buffer is shorter, [`Error::Device`].
+    pub fn write(&mut self, compute: &Compute, source: &[Pixel]) -> Result<()> {
+        self.reserve(compute, source.len())?;
+        match &mut self.pixels {
+            Some(pixels) => pixels.write(compute, source),
+            None => Ok(()),
         }
     }
 

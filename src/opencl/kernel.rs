@@ -67,6 +67,8 @@ macro_rules! by_value {
 }
 pub(crate) use by_value;
 
+by_value!(u32, f32);
+
 pub(crate) fn set_value<T: Pod>(
     kernel: &ClKernel,
     index: u32,

@@ -10,11 +10,15 @@ use opencl3::context::Context;
 use opencl3::event::Event;
 use opencl3::types::{cl_command_queue, cl_context, cl_event};
 
-use super::one::{DeviceRenderer, no_host};
-use super::{HostDepth, Renderer, RendererBackend};
-use crate::error::Result;
-use crate::opencl::{HostLink, HostTarget, RendererOptions, unfit};
+use super::host_depth::{self, HostDepth};
+use super::one::DeviceRenderer;
+use super::{Renderer, RendererBackend};
+use crate::cost::FrameCost;
+use crate::error::{Error, Result};
+use crate::image::Bloom;
+use crate::opencl::{Film, HeldDepths, HostLink, HostTarget, RendererOptions, unfit};
 use crate::scene::Scene;
+use crate::wave::DeviceDepths;
 
 impl Renderer {
     /// Makes a renderer on a host's context, for the device of the host's queue: it draws into the host's memory by
@@ -113,12 +117,89 @@ impl Renderer {
                 "the scene's are finer than its pixels; a host's memory takes one for each pixel";
             return Err(unfit("depth", reason));
         }
+        let bloom = self.bloom_of(scene);
         match &mut self.backend {
             // SAFETY: the caller's promise.
             RendererBackend::OpenCl(renderer) => unsafe {
-                renderer.enqueue(scene, target, depth, wait_list)
+                renderer.enqueue(scene, bloom, (target, depth), wait_list)
             },
             RendererBackend::Several(_) | RendererBackend::Reference { .. } => Err(no_host()),
         }
     }
+}
+
+impl DeviceRenderer {
+    /// Enqueues a frame of a valid scene for the host. Nothing here waits.
+    ///
+    /// # Safety
+    /// As [`crate::Renderer::enqueue_behind`].
+    unsafe fn enqueue(
+        &mut self,
+        scene: &Scene,
+        bloom: Option<Bloom>,
+        (target, depth): (HostTarget, Option<&HostDepth>),
+        wait_list: &[cl_event],
+    ) -> Result<Event> {
+        self.bloom_cost = FrameCost::default();
+        let Self {
+            wave,
+            spreader,
+            film,
+            host,
+            host_depths,
+            compute,
+            ..
+        } = self;
+        let host = host.as_mut().ok_or_else(no_host)?;
+        let size = (scene.image.width, scene.image.height);
+        let depth = match depth {
+            Some(depth) => {
+                let values = depth.values(scene)?;
+                // SAFETY: the caller's promise.
+                let held = unsafe { HeldDepths::take(compute, depth.memory, target, size) }?;
+                Some((held, values, depth.lengths_along()))
+            }
+            None => None,
+        };
+        // SAFETY: the caller's promise.
+        let mut frame = unsafe { host.begin(compute, film, target, size, wait_list) }?;
+        let mut draw = |film: &mut Film| {
+            let depths = match &depth {
+                Some((held, values, along)) => {
+                    host_depth::prepare(compute, host_depths)?;
+                    let memory = host_depths.enqueue(compute, held, values)?;
+                    Some(DeviceDepths {
+                        memory,
+                        along: *along,
+                    })
+                }
+                None => None,
+            };
+            let plan = wave.plan_behind(compute, scene, depths, film.format())?;
+            wave.begin(compute, &plan, scene.image.pixels())?;
+            let Some(bloom) = bloom else {
+                return wave.draw_unwatched(compute, &plan, film);
+            };
+            film.leave_unfinished(true);
+            let drawn = wave.draw_unwatched(compute, &plan, film);
+            film.leave_unfinished(false);
+            drawn?;
+            spreader.spread(compute, film, scene.image, &bloom)
+        };
+        let mut drawn = draw(film);
+        if matches!(drawn, Err(Error::Build { .. }))
+            && host.copies_instead(compute, film, &mut frame)?
+        {
+            drawn = draw(film);
+        }
+        host.end(compute, film, frame, drawn)
+    }
+}
+
+/// Makes the error of a frame that was to be enqueued by a renderer without a host.
+fn no_host() -> Error {
+    unfit(
+        "queue",
+        "this renderer was made without one; make it with Renderer::on_host",
+    )
 }

@@ -6,7 +6,7 @@ use super::one::Rows;
 use super::{Renderer, whole};
 use crate::cost::FrameCost;
 use crate::error::Result;
-use crate::image::{RadianceImage, kept_image};
+use crate::image::{Bloom, RadianceImage, kept_image};
 use crate::scene::{DepthLayers, Scene};
 
 impl Renderer {
@@ -33,6 +33,7 @@ impl Renderer {
                 rows: rows.clone(),
                 target,
                 stride,
+                bloom: None, // which is of all of them
             };
             self.cost_before = before;
             self.draw_part(scene, wanted, &mut |share| progress(done + part * share))?;
@@ -42,19 +43,23 @@ impl Renderer {
         let drawn = layers.draw(
             scene,
             rows.clone(),
-            (wanted.target, wanted.stride),
+            (&mut *wanted.target, wanted.stride),
             &mut draw,
         );
         self.layers = Some(layers);
-        drawn
+        drawn?;
+        match wanted.bloom {
+            Some(bloom) => self.spread(scene.image, wanted.target, &bloom),
+            None => Ok(()),
+        }
     }
 
     /// Draws such a frame into an image of the renderer's own.
-    pub(super) fn keep_layers(&mut self, scene: &Scene) -> Result<&[f32]> {
+    pub(super) fn keep_layers(&mut self, scene: &Scene, bloom: Option<Bloom>) -> Result<&[f32]> {
         let mut image = self.kept.take();
         let target = kept_image(&mut image, scene.image)?.as_mut_slice();
         let nothing = &mut |_: f32| ControlFlow::Continue(());
-        let drawn = self.draw_layers(scene, whole(scene, target), nothing);
+        let drawn = self.draw_layers(scene, whole(scene, target, bloom), nothing);
         self.kept = image;
         drawn?;
         Ok(self.kept.as_ref().map_or(&[], RadianceImage::as_slice))

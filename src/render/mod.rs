@@ -1,27 +1,30 @@
 //! The renderer: one front for the OpenCL devices and the built-in reference.
 
+mod bloom;
 mod device;
 mod host;
 mod host_depth;
 mod layers;
 mod one;
+mod referenced;
 mod several;
 mod shares;
 
 use std::ops::{ControlFlow, Deref, Range};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 pub use device::{Device, Devices};
 pub use host_depth::HostDepth;
 
 use crate::cost::FrameCost;
 use crate::error::{Error, Result, SceneError};
-use crate::image::{RadianceImage, kept_image};
+use crate::image::{Bloom, RadianceImage, kept_image, spread_light};
 use crate::opencl::{MappedFilm, RendererOptions};
 use crate::reference::{self, Tracer};
 use crate::scene::{CheckedSources, DepthLayers, Ray, Scene};
 use device::Backend;
 use one::{DeviceRenderer, Rows};
+use referenced::{draw_reference, reference_cost};
 use several::SeveralRenderer;
 
 /// An image in the renderer's own memory, linear RGBA by rows, readable until it is dropped.
@@ -52,6 +55,8 @@ pub struct Renderer {
     backend: RendererBackend,
     /// The sources that were checked last.
     checked: Option<CheckedSources>,
+    /// Whether frames have the bloom of their scene's display.
+    spreads_bloom: bool,
     /// The depths, finer than pixels, that were taken apart last.
     layers: Option<DepthLayers>,
     /// What parts of the last frame cost that were drawn before its last part.
@@ -122,6 +127,7 @@ impl Renderer {
         Self {
             backend,
             checked: None,
+            spreads_bloom: false,
             layers: None,
             cost_before: FrameCost::default(),
             kept: None,
@@ -158,12 +164,17 @@ impl Renderer {
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<RadianceImage> {
         self.check(scene)?;
+        let bloom = self.bloom_of(scene);
         let beside = match &self.backend {
-            RendererBackend::OpenCl(renderer) => renderer.missing_bytes(scene.image.pixels()),
+            RendererBackend::OpenCl(renderer) => {
+                renderer.missing_bytes(scene.image.pixels(), bloom.is_some())
+            }
             RendererBackend::Several(_) | RendererBackend::Reference { .. } => 0,
         };
         let mut image = RadianceImage::beside(scene.image, beside)?;
-        self.draw(scene, whole(scene, image.as_mut_slice()), progress)?;
+        let light = image.as_mut_slice();
+        self.draw(scene, whole(scene, light, bloom), progress)?;
+        image.mark_bloomed(bloom);
         Ok(image)
     }
 
@@ -182,9 +193,8 @@ impl Renderer {
                 scene.image.height
             )));
         }
-        self.draw(scene, whole(scene, target), &mut |_| {
-            ControlFlow::Continue(())
-        })
+        let all = whole(scene, target, self.bloom_of(scene));
+        self.draw(scene, all, &mut |_| ControlFlow::Continue(()))
     }
 
     /// Renders some rows of the scene's image into the caller's memory, such as a part of a larger image: linear RGBA
@@ -196,7 +206,8 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::render`], and [`Error::Unsupported`] if the image does not have those rows, a row of `4 * width`
-    /// values is longer than `stride`, or `target` ends before the last row does.
+    /// values is longer than `stride`, `target` ends before the last row does, or the renderer was told to spread a
+    /// bloom that the scene has.
     pub fn render_rows(
         &mut self,
         scene: &Scene,
@@ -226,10 +237,17 @@ impl Renderer {
                 rows.len()
             )));
         }
+        if self.bloom_of(scene).is_some() {
+            return Err(Error::Unsupported(
+                "render_rows: a bloom needs all of an image; spread it when all rows are there (Renderer::bloom)"
+                    .to_owned(),
+            ));
+        }
         let wanted = Rows {
             rows,
             target,
             stride,
+            bloom: None,
         };
         self.draw(scene, wanted, &mut |_| ControlFlow::Continue(()))
     }
@@ -241,17 +259,18 @@ impl Renderer {
     /// As [`Renderer::render`], and [`Error::OutOfMemory`] if the image is larger than one buffer of the device.
     pub fn render_mapped(&mut self, scene: &Scene) -> Result<MappedImage<'_>> {
         self.check(scene)?;
+        let bloom = self.bloom_of(scene);
         if self.has_layers(scene)? {
-            let values = self.keep_layers(scene)?;
+            let values = self.keep_layers(scene, bloom)?;
             return Ok(MappedImage(MappedBackend::Host(values)));
         }
         match &mut self.backend {
             RendererBackend::OpenCl(renderer) => {
-                let mapped = renderer.render_mapped(scene)?;
+                let mapped = renderer.render_mapped(scene, bloom)?;
                 Ok(MappedImage(MappedBackend::OpenCl(mapped)))
             }
             RendererBackend::Several(renderer) => {
-                let values = renderer.render_kept(scene)?;
+                let values = renderer.render_kept(scene, bloom)?;
                 Ok(MappedImage(MappedBackend::Host(values)))
             }
             RendererBackend::Reference { image, cost } => {
@@ -260,6 +279,9 @@ impl Renderer {
                 let nothing = &mut |_: f32| ControlFlow::Continue(());
                 let (method, rows) = (scene.integration.method, 0..scene.image.height);
                 reference::render_rows(scene, method, rows, image.as_mut_slice(), nothing)?;
+                if let Some(bloom) = bloom {
+                    spread_light(scene.image, image.as_mut_slice(), &bloom);
+                }
                 *cost = reference_cost(scene, scene.image.pixels(), begun.elapsed());
                 Ok(MappedImage(MappedBackend::Host(image.as_slice())))
             }
@@ -360,47 +382,12 @@ impl Renderer {
 }
 
 /// Returns all rows of a scene's image.
-fn whole<'a>(scene: &Scene, target: &'a mut [f32]) -> Rows<'a> {
+fn whole<'a>(scene: &Scene, target: &'a mut [f32], bloom: Option<Bloom>) -> Rows<'a> {
     Rows {
         rows: 0..scene.image.height,
         target,
         stride: 4 * scene.image.width as usize,
-    }
-}
-
-fn draw_reference(
-    scene: &Scene,
-    wanted: Rows<'_>,
-    progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
-) -> Result<()> {
-    let Rows {
-        rows,
-        target,
-        stride,
-    } = wanted;
-    let (method, row) = (scene.integration.method, 4 * scene.image.width as usize);
-    if stride == row {
-        let target = &mut target[..rows.len() * row];
-        return reference::render_rows(scene, method, rows, target, progress);
-    }
-    let mut image = vec![0.0; rows.len() * row];
-    reference::render_rows(scene, method, rows, &mut image, progress)?;
-    for (to, from) in target.chunks_mut(stride).zip(image.chunks_exact(row)) {
-        to[..row].copy_from_slice(from);
-    }
-    Ok(())
-}
-
-/// Returns the cost of a frame on the reference, all of whose time counts as the kernels'; the samples of its adaptive
-/// quadrature are not counted.
-fn reference_cost(scene: &Scene, pixels: usize, time: Duration) -> FrameCost {
-    let integrals = pixels as u64 * scene.light_count() as u64;
-    let samples = scene.integration.method.samples().unwrap_or(0);
-    FrameCost {
-        kernel: time,
-        integrals,
-        samples: integrals * u64::from(samples),
-        launches: 1,
+        bloom,
     }
 }
 

@@ -3,31 +3,31 @@
 use std::ops::{ControlFlow, Range};
 use std::time::{Duration, Instant};
 
-use opencl3::event::Event;
-use opencl3::types::cl_event;
-
-use super::host_depth::{self, HostDepth};
+use crate::bloom::Spreader;
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
+use crate::image::{Bloom, ImageSize};
 use crate::opencl::{
-    Compute, Film, HeldDepths, HostDepths, HostLink, HostTarget, MappedFilm, OpenClDevice, Pixel,
-    RendererOptions, unfit,
+    Compute, Film, HostDepths, HostLink, MappedFilm, OpenClDevice, Pixel, RendererOptions,
 };
 use crate::scene::{Ray, Scene};
-use crate::wave::{DeviceDepths, Plan, Wave};
+use crate::wave::{Plan, Wave};
 
 /// A device with its engines and its film, which are kept from frame to frame.
 #[derive(Debug)]
 pub(crate) struct DeviceRenderer {
     // Dropped in this order: what uses the context before the context.
-    wave: Wave,
-    film: Film,
+    pub(super) wave: Wave,
+    pub(super) spreader: Spreader,
+    /// Of the bloom of the last frame.
+    pub(super) bloom_cost: FrameCost,
+    pub(super) film: Film,
     /// The host whose frames are enqueued, if there is one.
-    host: Option<HostLink>,
-    host_depths: HostDepths,
+    pub(super) host: Option<HostLink>,
+    pub(super) host_depths: HostDepths,
     /// Whether the device itself writes the caller's memory where it can; else what it wrote is copied there.
     pub(crate) writes_in_place: bool,
-    compute: Compute,
+    pub(super) compute: Compute,
 }
 
 /// Rows of an image that are wanted, and where: RGBA by rows that begin `stride` values apart, the first at the
@@ -36,6 +36,8 @@ pub(crate) struct Rows<'a> {
     pub rows: Range<u32>,
     pub target: &'a mut [f32],
     pub stride: usize,
+    /// Of the light of all rows, if they are those of an image and no others lie between them.
+    pub bloom: Option<Bloom>,
 }
 
 /// Hears the finished share of the work, 0 to 1, and may stop it.
@@ -61,6 +63,8 @@ impl DeviceRenderer {
         check_known(compute.device(), options)?;
         Ok(Self {
             wave: Wave::new(&compute, options)?,
+            spreader: Spreader::new(options),
+            bloom_cost: FrameCost::default(),
             film: Film::new(),
             host,
             host_depths: HostDepths::new(options),
@@ -74,13 +78,17 @@ impl DeviceRenderer {
     }
 
     /// Returns how much more of the host's memory a frame of so many pixels takes, beside the image, bytes.
-    pub(crate) fn missing_bytes(&self, pixels: usize) -> u64 {
-        self.film.missing_bytes(&self.compute, pixels)
+    pub(crate) fn missing_bytes(&self, pixels: usize, has_bloom: bool) -> u64 {
+        let levels = match has_bloom {
+            true => self.spreader.missing_bytes(&self.compute, pixels),
+            false => 0,
+        };
+        self.film.missing_bytes(&self.compute, pixels) + levels
     }
 
     /// Returns what the last frame cost.
     pub(crate) fn cost(&self) -> FrameCost {
-        self.wave.cost()
+        self.wave.cost().then(self.bloom_cost)
     }
 
     /// Returns what [`Wave::grain_rows`] says.
@@ -96,6 +104,7 @@ impl DeviceRenderer {
         wanted: Rows<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<Option<Duration>> {
+        self.bloom_cost = FrameCost::default();
         let built = self.wave.kernel_count();
         let plan = self.wave.plan(&self.compute, scene, self.film.format())?;
         let is_built = self.wave.kernel_count() == built;
@@ -104,7 +113,9 @@ impl DeviceRenderer {
             rows,
             target,
             stride,
+            bloom,
         } = wanted;
+        let bloom = bloom.map(|bloom| (scene.image, bloom));
         let width = scene.image.width as usize;
         let pixels = Wave::pixels_of(scene, &rows);
         let (begin, len) = (pixels.start as usize, pixels.len());
@@ -127,7 +138,10 @@ impl DeviceRenderer {
                 false => film.read_rows(compute, band.len(), 4 * width, target, stride),
             }
         };
-        self.draw_bands(&plan, pixels, grain, &mut read, progress)?;
+        let is_whole = self.draw_bands(&plan, pixels, grain, bloom, &mut read, progress)?;
+        if let (Some((size, bloom)), false) = (bloom, is_whole) {
+            self.bloom(size, &mut target[..4 * len], &bloom)?;
+        }
         Ok(is_built.then(|| begun.elapsed()))
     }
 
@@ -140,21 +154,25 @@ impl DeviceRenderer {
         };
         let nothing = &mut |_: f32| ControlFlow::Continue(());
         let all = 0..rays.len() as u32;
-        self.draw_bands(&plan, all, plan.grain(), &mut read, nothing)?;
+        self.bloom_cost = FrameCost::default();
+        self.draw_bands(&plan, all, plan.grain(), None, &mut read, nothing)?;
         Ok(radiances)
     }
 
-    /// Draws pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read.
+    /// Draws pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read; with the
+    /// bloom where there is a single band. Returns whether there was.
     fn draw_bands(
         &mut self,
         plan: &Plan,
         pixels: Range<u32>,
         grain: u32,
+        bloom: Option<(ImageSize, Bloom)>,
         read: &mut Read<'_>,
         progress: &mut Progress<'_>,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let Self {
             wave,
+            spreader,
             film,
             compute,
             ..
@@ -166,10 +184,15 @@ impl DeviceRenderer {
             film.begin_at(begin);
             let mut report = |pixel| progress(share(&pixels, pixel));
             wave.draw(compute, plan, band.clone(), film, &mut report)?;
+            if let (Some((size, bloom)), true) = (bloom, band == pixels) {
+                spreader.spread(compute, film, size, &bloom)?;
+            }
             read(film, compute, band.start as usize..band.end as usize)?;
             wave.settle(compute, plan)?;
         }
-        wave.settle_uploads(compute)
+        self.bloom_cost = spreader.settle(compute)?;
+        wave.settle_uploads(compute)?;
+        Ok(band_len >= pixels.len())
     }
 
     /// Lets the device draw pixels where the caller wants them.
@@ -197,10 +220,17 @@ impl DeviceRenderer {
     }
 
     /// Renders into the film's own buffer and maps it: on a CPU, nothing is copied.
-    pub(crate) fn render_mapped(&mut self, scene: &Scene) -> Result<MappedFilm<'_>> {
+    pub(crate) fn render_mapped(
+        &mut self,
+        scene: &Scene,
+        bloom: Option<Bloom>,
+    ) -> Result<MappedFilm<'_>> {
+        self.bloom_cost = FrameCost::default();
         let plan = self.wave.plan(&self.compute, scene, self.film.format())?;
         let Self {
             wave,
+            spreader,
+            bloom_cost,
             film,
             compute,
             ..
@@ -218,68 +248,14 @@ impl DeviceRenderer {
         film.begin_at(0);
         let nothing = &mut |_: u32| ControlFlow::Continue(());
         wave.draw(compute, &plan, 0..pixels as u32, film, nothing)?;
+        if let Some(bloom) = bloom {
+            spreader.spread(compute, film, scene.image, &bloom)?;
+        }
         let mapped = film.map(compute, pixels)?;
         wave.settle(compute, &plan)?;
+        *bloom_cost = spreader.settle(compute)?;
         wave.settle_uploads(compute)?;
         Ok(mapped)
-    }
-
-    /// Enqueues a frame of a valid scene for the host. Nothing here waits.
-    ///
-    /// # Safety
-    /// As [`crate::Renderer::enqueue_behind`].
-    #[allow(unsafe_code)] // the caller's promise is handed on
-    pub(crate) unsafe fn enqueue(
-        &mut self,
-        scene: &Scene,
-        target: HostTarget,
-        depth: Option<&HostDepth>,
-        wait_list: &[cl_event],
-    ) -> Result<Event> {
-        let Self {
-            wave,
-            film,
-            host,
-            host_depths,
-            compute,
-            ..
-        } = self;
-        let host = host.as_mut().ok_or_else(no_host)?;
-        let size = (scene.image.width, scene.image.height);
-        let depth = match depth {
-            Some(depth) => {
-                let values = depth.values(scene)?;
-                // SAFETY: the caller's promise.
-                let held = unsafe { HeldDepths::take(compute, depth.memory, target, size) }?;
-                Some((held, values, depth.lengths_along()))
-            }
-            None => None,
-        };
-        // SAFETY: the caller's promise.
-        let mut frame = unsafe { host.begin(compute, film, target, size, wait_list) }?;
-        let mut draw = |film: &mut Film| {
-            let depths = match &depth {
-                Some((held, values, along)) => {
-                    host_depth::prepare(compute, host_depths)?;
-                    let memory = host_depths.enqueue(compute, held, values)?;
-                    Some(DeviceDepths {
-                        memory,
-                        along: *along,
-                    })
-                }
-                None => None,
-            };
-            let plan = wave.plan_behind(compute, scene, depths, film.format())?;
-            wave.begin(compute, &plan, scene.image.pixels())?;
-            wave.draw_unwatched(compute, &plan, film)
-        };
-        let mut drawn = draw(film);
-        if matches!(drawn, Err(Error::Build { .. }))
-            && host.copies_instead(compute, film, &mut frame)?
-        {
-            drawn = draw(film);
-        }
-        host.end(compute, film, frame, drawn)
     }
 }
 
@@ -298,14 +274,6 @@ fn check_known(device: &OpenClDevice, options: &RendererOptions) -> Result<()> {
 /// Returns the finished share of some pixels.
 fn share(pixels: &Range<u32>, pixel: u32) -> f32 {
     (pixel - pixels.start) as f32 / pixels.len() as f32
-}
-
-/// Makes the error of a frame that was to be enqueued by a renderer without a host.
-pub(crate) fn no_host() -> Error {
-    unfit(
-        "queue",
-        "this renderer was made without one; make it with Renderer::on_host",
-    )
 }
 
 #[cfg(test)]
@@ -345,6 +313,7 @@ pub(crate) mod tests {
             rows,
             target: &mut target,
             stride,
+            bloom: None,
         };
         let nothing = &mut |_: f32| ControlFlow::Continue(());
         renderer.render_rows(scene, wanted, nothing).unwrap();

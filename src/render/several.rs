@@ -10,7 +10,7 @@ use super::one::{DeviceRenderer, Rows};
 use super::shares::Shares;
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
-use crate::image::{RadianceImage, kept_image};
+use crate::image::{Bloom, ImageSize, RadianceImage, kept_image};
 use crate::opencl::RendererOptions;
 use crate::scene::{Ray, Scene};
 
@@ -74,7 +74,7 @@ impl SeveralRenderer {
             stride,
             error: OnceLock::new(),
         };
-        let mut rest = wanted.target;
+        let mut rest = &mut *wanted.target;
         let mut parts = Vec::new();
         for (renderer, rows) in self.renderers.iter_mut().zip(&rows) {
             let len = rest.len().min(rows.len() * stride);
@@ -95,11 +95,27 @@ impl SeveralRenderer {
         let times: Vec<Option<Duration>> = parts.iter().map(|part| part.time).collect();
         self.shares.learn(&rows, &times);
         self.rows = rows;
+        if let Some(bloom) = wanted.bloom {
+            self.bloom(scene.image, wanted.target, &bloom)?;
+        }
+        Ok(())
+    }
+
+    /// Spreads the light of a whole image on the first device.
+    pub(crate) fn bloom(
+        &mut self,
+        size: ImageSize,
+        light: &mut [f32],
+        bloom: &Bloom,
+    ) -> Result<()> {
+        let first = &mut self.renderers[0];
+        first.bloom(size, light, bloom)?;
+        self.cost = self.cost.then(first.bloom_cost);
         Ok(())
     }
 
     /// Renders into memory of its own.
-    pub(crate) fn render_kept(&mut self, scene: &Scene) -> Result<&[f32]> {
+    pub(crate) fn render_kept(&mut self, scene: &Scene, bloom: Option<Bloom>) -> Result<&[f32]> {
         let mut image = self.image.take();
         let target = kept_image(&mut image, scene.image)?.as_mut_slice();
         let row = 4 * scene.image.width as usize;
@@ -108,6 +124,7 @@ impl SeveralRenderer {
             rows: 0..scene.image.height,
             target,
             stride: row,
+            bloom,
         };
         self.render_rows(scene, all, nothing)?;
         self.image = image;
@@ -206,6 +223,7 @@ impl Share<'_> {
             rows,
             target: self.target,
             stride,
+            bloom: None, // which needs all rows
         };
         let drawn = self.renderer.render_rows(frame.scene, part, &mut progress);
         match drawn {

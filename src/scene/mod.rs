@@ -89,9 +89,9 @@ macro_rules! define_scene {
             pub integration: Integration,
             /// How radiance becomes an 8-bit picture.
             pub display: Display,
-            /// How far each pixel's ray sees; `None`: nothing hides the light. Of the size of the image, or 2 to 8 times
-            /// as many depths across and down: pixels at the edges of things are then the mean of the light before
-            /// each surface.
+            /// How far each pixel's ray sees; `None`: nothing hides the light. Of the size of the image, or 2 to 8
+            /// times as many depths across and down: pixels at the edges of things are then the mean of the light
+            /// before each surface.
             pub depth: Option<DepthImage>,
             $($(#[$doc])* pub $list: List<$Type>,)*
         }

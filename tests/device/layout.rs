@@ -4,8 +4,11 @@
 use crate::common;
 use energywave::internals::pack::layout::STRUCTS;
 use energywave::internals::{
-    self, DeviceBuffer, DeviceStruct, KINDS, StoredDepths, StructLayout, host_depth_definitions,
+    self, BloomStep, DeviceBuffer, DeviceStruct, KINDS, StoredDepths, StructLayout,
+    host_depth_definitions,
 };
+
+const BLOOM_STEP: StructLayout = BloomStep::LAYOUT;
 
 /// A kernel that copies every 32-bit word of every field, reached by the field's name, in the order of the host's list.
 fn copy_fields(layout: &StructLayout, files: &str) -> String {
@@ -31,7 +34,11 @@ fn copy_fields(layout: &StructLayout, files: &str) -> String {
 const FILES: &str = "#include \"film.h\"\n#include \"view.h\"\n#include \"wave/kinds.h\"\n#include \"wave/types.h\"\n";
 
 fn words_by_name(layout: &StructLayout) -> Vec<u32> {
-    words_of(layout, FILES, "")
+    let files = match layout.name == BLOOM_STEP.name {
+        true => "#include \"film.h\"\n#include \"bloom/step.h\"\n",
+        false => FILES,
+    };
+    words_of(layout, files, "")
 }
 
 /// The words that the device finds in a record whose word k is k + 1.
@@ -46,8 +53,11 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
     output.write(&compute, &vec![0; count]).unwrap();
     let text = copy_fields(layout, files);
     let options = common::options(1, definitions);
-    let program =
-        internals::build_text(&compute, "copy_fields.cl", &text, &KINDS, &options).unwrap();
+    let program = match layout.name == BLOOM_STEP.name {
+        true => internals::build_bloom_text(&compute, "copy_fields.cl", &text, &options),
+        false => internals::build_text(&compute, "copy_fields.cl", &text, &KINDS, &options),
+    }
+    .unwrap();
     // SAFETY: the kernel reads and writes as many words as the record has.
     unsafe {
         internals::run(
@@ -67,7 +77,7 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
 
 #[test]
 fn the_device_finds_every_field_where_the_host_put_it() {
-    for layout in STRUCTS {
+    for layout in STRUCTS.iter().chain([&BLOOM_STEP]) {
         let expected: Vec<u32> = (1..=layout.size as u32 / 4).collect();
         assert_eq!(words_by_name(layout), expected, "{}", layout.name);
     }

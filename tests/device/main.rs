@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bloom; // compares the bloom of a picture with the host's
 mod canaries; // looks for what is written behind an image
 mod device_functions; // compares device functions, one at a time, with float64
 mod distances; // compares the distance to every kind of core with float64

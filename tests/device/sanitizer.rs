@@ -4,10 +4,10 @@
 
 use crate::common;
 use crate::common::host::Host;
-use energywave::image::DepthAlong;
+use energywave::image::{Bloom, DepthAlong};
 use energywave::scene::{Method, Profile};
 use energywave::verify::built_in_rays;
-use energywave::{HostDepth, HostDepthMemory, Renderer, RendererOptions, Scene};
+use energywave::{HostDepth, HostDepthMemory, RadianceImage, Renderer, RendererOptions, Scene};
 use opencl3::memory::{
     CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA, ClMem,
 };
@@ -232,4 +232,23 @@ fn a_hosts_depths_are_read_where_they_are() {
         let light: f32 = found.chunks(4).map(|pixel| pixel[0]).sum();
         assert_eq!(light == 0.0, is_dark, "{value}: {light}");
     }
+}
+
+#[test]
+fn a_bloom() {
+    let mut scene = common::empty_scene(37, 26);
+    scene.integration.method = Method::simpson(4);
+    scene.spheres.push(common::sphere([0.0; 3], 1.0));
+    // Levels that one group takes, and one before them.
+    scene.display.bloom = Some(Bloom {
+        strength: 0.5,
+        radius: 0.3,
+    });
+    let mut renderer = common::renderer(common::device().lanes, "");
+    let before = renderer.render(&scene).unwrap();
+    renderer.spread_bloom(true);
+    let after = renderer.render(&scene).unwrap();
+    let sum = |image: &RadianceImage| image.as_slice().iter().sum::<f32>();
+    let (before, after) = (sum(&before), sum(&after));
+    assert!((after - before).abs() < 1e-4 * before, "{before} {after}");
 }

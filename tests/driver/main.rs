@@ -8,6 +8,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bloom_faults; // lets every call of a bloom fail in turn
 mod faults; // lets every call of a frame fail in turn
 mod host_depths; // gives a frame a host's depths that do not fit, and lets what reads them fail
 mod host_faults; // lets every call of a host's frame fail, and gives what does not fit

@@ -4,6 +4,7 @@
 use crate::common;
 use crate::common::host::Host;
 use energywave::HostTarget;
+use energywave::image::Bloom;
 use energywave::scene::{Method, Sampling};
 use energywave::{RadianceImage, Renderer, Scene};
 use opencl3::command_queue::{CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE, CL_QUEUE_PROFILING_ENABLE};
@@ -123,6 +124,46 @@ fn one_sphere() -> Scene {
 }
 
 #[test]
+fn a_hosts_buffers_and_images_get_the_bloom_that_is_read_back() {
+    let host = Host::new(0);
+    let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
+    let mut scene = one_sphere();
+    scene.display.bloom = Some(Bloom::new(0.5));
+    let size = scene.image;
+    let without = renderer.render(&scene).unwrap();
+    renderer.spread_bloom(true);
+    let expected = renderer.render(&scene).unwrap();
+    assert!(difference(without.as_slice(), &expected) > 0.05);
+    let buffer = host.buffer(CL_MEM_READ_WRITE, size);
+    let unmapped = CL_MEM_READ_WRITE | CL_MEM_HOST_NO_ACCESS;
+    let images = [
+        host.image(size, CL_FLOAT),
+        host.image(size, CL_HALF_FLOAT),
+        host.image_of(unmapped, size, CL_RGBA, CL_FLOAT),
+        host.image_of(unmapped, size, CL_RGBA, CL_HALF_FLOAT),
+    ];
+    let kernels = HALF_ROUNDING + OTHER_KERNEL;
+    let limits = [0.0, kernels, OTHER_KERNEL, kernels];
+    // The second frame finds everything built.
+    for _ in 0..2 {
+        let event = enqueue(&mut renderer, &scene, (&buffer).into(), &[]).unwrap();
+        let found = host.read((&buffer).into(), size, &[&event]);
+        assert_eq!(difference(&found, &expected), 0.0);
+        for (image, limit) in images.iter().zip(limits) {
+            let event = enqueue(&mut renderer, &scene, image.into(), &[]).unwrap();
+            let copy = host.copy(image, size, &event);
+            let worst = difference(&host.read((&copy).into(), size, &[]), &expected);
+            assert!(worst <= limit, "{limit:e}: {worst:e}");
+        }
+    }
+    // What is not told to spread it does not.
+    renderer.spread_bloom(false);
+    let event = enqueue(&mut renderer, &scene, (&buffer).into(), &[]).unwrap();
+    let found = host.read((&buffer).into(), size, &[&event]);
+    assert_eq!(difference(&found, &without), 0.0);
+}
+
+#[test]
 fn where_no_kernel_can_write_images_a_buffer_is_copied_to_them() {
     let host = Host::new(0);
     // As PoCL 7 does: kernels that write images are not built.
@@ -136,7 +177,9 @@ fn where_no_kernel_can_write_images_a_buffer_is_copied_to_them() {
     let (context, queue) = (host.context.get(), host.queue.get());
     // SAFETY: the host keeps both.
     let mut renderer = unsafe { Renderer::on_raw_host(context, queue, &options) }.unwrap();
-    let scene = one_sphere();
+    let mut scene = one_sphere();
+    scene.display.bloom = Some(Bloom::new(0.5));
+    renderer.spread_bloom(true);
     let expected = renderer.render(&scene).unwrap();
     let mut smaller = scene.clone();
     smaller.image.height -= 9;

@@ -120,8 +120,8 @@ fn examples_of_drawing_can_be_typed_as_they_stand() {
         {
             // Smaller, as it is the line that is tried here and not the picture.
             let line = line
-                .replace("laser.png", "laser.png --size 8x8")
-                .replace("320x180", "8x8");
+                .replace("laser.png", "laser.png --size 8x8 --antialias none")
+                .replace("320x180", "8x8 --antialias none");
             let output = Command::new("sh")
                 .args(["-c", line.trim()])
                 .current_dir(folder.path())

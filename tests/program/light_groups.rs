@@ -109,18 +109,18 @@ fn wrong_light_groups_are_told_and_nothing_is_written() {
     let folder = folder();
     expect(
         &render(&folder, "lit.png", &["--light-groups"]),
-        5,
+        2,
         "--light-groups: they are layers, which need an .exr",
     );
     for (rest, code, words) in [
         (
             "[[sphere]]\n",
-            5,
+            2,
             "--light-groups: no source or [[group]] of the scene names a light_group",
         ),
         (
             "[[sphere]]\nlight_group = \"rest\"\n[[sphere]]\n",
-            5,
+            2,
             "`rest` is the layer of sources without a light_group",
         ),
         (
