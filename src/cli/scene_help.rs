@@ -83,6 +83,7 @@ fn line(key: &Key) -> String {
             form => format!("{unit}, {form}"),
         },
     };
+    let absent = format!("{absent} "); // some are longer than the column
     let mut text = format!("  {:NAME$}{absent:ABSENT$}", key.name);
     let mut column = text.chars().count();
     for word in format!("{} ({kind})", key.help).split(' ') {
