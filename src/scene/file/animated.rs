@@ -44,7 +44,7 @@ impl<'a> Document<'a> {
     ) -> Result<Self> {
         let text = text.into();
         let (language, read) = match is_json {
-            true => (Language::Json, json::read(&text)),
+            true => (json::LANGUAGE, json::read(&text)),
             false => (Language::Toml, toml::read(&text)),
         };
         let (file, moving) = read.map_err(|error| match name {

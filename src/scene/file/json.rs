@@ -10,6 +10,9 @@ use super::{SceneFile, TRACKS_FACTOR, check_memory, empty_file};
 use crate::error::{Error, Result, SceneError};
 use crate::scene::Scene;
 
+/// What a JSON scene is written in.
+pub(super) const LANGUAGE: Language = Language::Json;
+
 /// Bytes that reading takes for each byte of a text, at most.
 const MEMORY_FACTOR: u64 = 12;
 

@@ -2,8 +2,12 @@
 
 use super::SceneFile;
 use super::moving::Moving;
+use super::words::Language;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
+
+/// Stands for JSON, of which nothing is read.
+pub(super) const LANGUAGE: Language = Language::Toml;
 
 pub(super) fn read(_: &str) -> Result<(SceneFile, Moving)> {
     Err(missing())

@@ -1,7 +1,5 @@
 //! All tables of a scene file, from those beside the types that are read.
 
-#[allow(unused_imports, reason = "for its documentation")]
-use super::Form;
 use super::Key;
 use super::words::*;
 use crate::image::ImageSize;

@@ -58,6 +58,9 @@ pub enum TrackLoop {
     PingPong,
 }
 
+/// Stands for the values that a track lacks which is none.
+static MISSING: TrackValue = TrackValue::Number(f64::NAN);
+
 /// A value as a function of time.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -102,7 +105,15 @@ impl Track {
         }
     }
 
-    /// Returns the value at a time, seconds; of a track that [`AnimatedScene`](super::AnimatedScene) would take.
+    /// Checks that it is a track: that times grow, that values have one shape, and that all is within its bounds.
+    ///
+    /// # Errors
+    /// [`Error::Scene`](crate::Error::Scene) with a key such as `track.times[1]`.
+    pub fn validate(&self) -> crate::Result<()> {
+        Ok(self.check().map_err(|fault| fault.of("track"))?)
+    }
+
+    /// Returns the value at a time, seconds; of what is no valid track, no number.
     #[must_use]
     pub fn at(&self, time: f64) -> TrackValue {
         self.at_in(time, None)
@@ -136,21 +147,20 @@ impl Track {
             Interpolation::Linear => {
                 TrackValue::of([from, to], &mut |[from, to]| from + (to - from) * share)
             }
-            Interpolation::Cubic => of([
-                from,
-                to,
-                &self.values[3 * key + 2],
-                &self.values[3 * key + 3],
-            ]),
+            Interpolation::Cubic => of([from, to, self.nth(3 * key + 2), self.nth(3 * key + 3)]),
             Interpolation::Smooth => of([from, to, &tangent(self, key), &tangent(self, key + 1)]),
         }
+    }
+
+    fn nth(&self, index: usize) -> &TrackValue {
+        self.values.get(index).unwrap_or(&MISSING)
     }
 
     /// Returns the value at a key.
     fn value(&self, key: usize) -> &TrackValue {
         match self.interpolation {
-            Interpolation::Cubic if !self.times.is_empty() => &self.values[3 * key + 1],
-            _ => &self.values[key],
+            Interpolation::Cubic if !self.times.is_empty() => self.nth(3 * key + 1),
+            _ => self.nth(key),
         }
     }
 
@@ -182,7 +192,7 @@ impl Track {
             return time; // to the bit, so that no key is missed
         }
         match self.looping {
-            TrackLoop::Once => time.clamp(first, last),
+            TrackLoop::Once => time.max(first).min(last),
             TrackLoop::Repeat => first + wrapped(time - first, cycle),
             TrackLoop::PingPong => first + length - (wrapped(time - first, cycle) - length).abs(),
         }

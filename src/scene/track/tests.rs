@@ -279,7 +279,9 @@ fn what_is_no_track_is_refused() {
         ..Track::constant(0.0)
     };
     let nan = Track::new([(0.0, f64::NAN), (1.0, 2.0)]);
-    assert!(nan.check().is_err());
+    assert!(nan.at(0.0).all(&f64::is_nan) && track(&[1.0, 0.0], &[]).at(0.5).all(&f64::is_nan));
+    let error = nan.validate().unwrap_err().to_string();
+    assert!(error.starts_with("scene: track.values[0]: "), "{error}");
     for (wrong, key) in [
         (track(&[0.0, 1.0, 1.0], &[1.0; 3]), "times[2]"),
         (track(&[0.0, f64::INFINITY], &[1.0; 2]), "times[1]"),
