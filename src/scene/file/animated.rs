@@ -143,9 +143,9 @@ impl Motion<'_> {
 ///
 /// let scene = AnimatedScene::from_toml(
 ///     "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n[[torus]]\n\
-///      major_radius = { times = [0, 2], values = [0.1, 1.5] }\n",
+///      major_radius = { times = [0, 2], values = [0.5, 1.5] }\n",
 /// )?;
-/// assert_eq!(scene.at(1.0)?.tori[0].major_radius, 0.8);
+/// assert_eq!(scene.at(1.0)?.tori[0].major_radius, 1.0);
 /// # Ok(())
 /// # }
 /// ```
