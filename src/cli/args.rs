@@ -79,6 +79,9 @@ pub struct RenderArguments {
     /// Write a layer into the EXR for each light_group of the scene, and one for the rest
     #[arg(long)]
     pub light_groups: bool,
+    /// When it is in a scene that moves, seconds [default: 0]
+    #[arg(long, value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
+    pub time: Option<f64>,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
@@ -368,6 +371,13 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if (0.0..=3600.0).contains(&seconds) => Ok(seconds),
         _ => Err("a time is a number of seconds up to 3600".to_owned()),
+    }
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if f64::abs(time) <= 1e9 => Ok(time),
+        _ => Err("a time is a number of seconds, such as 1.5".to_owned()),
     }
 }
 

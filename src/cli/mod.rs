@@ -25,7 +25,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use anstyle::AnsiColor;
 use clap::Parser;
 use energywave::scene::keys::json_schema;
-use energywave::scene::{Method, MethodKeys, Scene};
+use energywave::scene::{AnimatedScene, Method, MethodKeys, Scene};
 use energywave::{Device, DeviceType, Devices, Error, ErrorKind, shown, shown_lines};
 
 use args::{Arguments, Command};
@@ -190,10 +190,20 @@ fn read_scene(
     path: &Path,
     adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<(), Error>,
 ) -> Result<Scene, Error> {
-    let (scene, warnings) = match path == Path::new("-") {
-        true => Scene::from_reader_with_warnings(io::stdin().lock(), "standard input", adjust),
-        false => Scene::from_file_with_warnings(path, adjust),
+    read_frame(path, 0.0, adjust)
+}
+
+/// Reads a scene as it is at a time, seconds.
+fn read_frame(
+    path: &Path,
+    time: f64,
+    adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<(), Error>,
+) -> Result<Scene, Error> {
+    let scene = match path == Path::new("-") {
+        true => AnimatedScene::from_reader(io::stdin().lock(), "standard input"),
+        false => AnimatedScene::from_file(path),
     }?;
+    let (scene, warnings) = scene.into_frame(time, adjust)?;
     for warning in warnings {
         warn(&warning.to_string());
     }

@@ -9,7 +9,7 @@ use energywave::{Device, Error, RadianceImage, Renderer, Scene, shown};
 
 use super::args::{FormatName, RenderArguments};
 use super::progress::{Progress, catch_interrupts, was_interrupted};
-use super::{Outcome, choose_devices, method_name, names, note, read_scene, tell_depths};
+use super::{Outcome, choose_devices, method_name, names, note, read_frame, tell_depths};
 
 pub fn run(arguments: RenderArguments) -> Outcome {
     let format = format(&arguments)?;
@@ -19,13 +19,17 @@ pub fn run(arguments: RenderArguments) -> Outcome {
         return Err(Error::Unsupported(message.to_owned()).into());
     }
     let overrides = &arguments.overrides;
-    let mut scene = read_scene(&arguments.scene, |scene, keys| {
-        overrides.apply(scene, keys)?;
-        let display = &mut scene.display;
-        display.bits = arguments.bits.or(display.bits);
-        display.exposure = arguments.exposure.unwrap_or(display.exposure);
-        format.check(display)
-    })?;
+    let mut scene = read_frame(
+        &arguments.scene,
+        arguments.time.unwrap_or(0.0),
+        |scene, keys| {
+            overrides.apply(scene, keys)?;
+            let display = &mut scene.display;
+            display.bits = arguments.bits.or(display.bits);
+            display.exposure = arguments.exposure.unwrap_or(display.exposure);
+            format.check(display)
+        },
+    )?;
     let groups = match arguments.light_groups {
         true => light_groups(&scene)?,
         false => Vec::new(),

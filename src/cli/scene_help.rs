@@ -3,7 +3,9 @@
 use std::ops::Bound;
 
 use energywave::Error;
-use energywave::scene::keys::{Absent, Count, Form, Key, KeyGroup, Table, table, tables};
+use energywave::scene::keys::{
+    Absent, Count, Form, Key, KeyGroup, Table, table, tables, track_tables,
+};
 
 use super::help::unknown;
 
@@ -18,10 +20,13 @@ pub fn all() -> String {
 A scene file is TOML, or JSON of the same structure. Its tables with their keys, what holds where
 a key is left out, and what it is; `energywave help scene torus` shows one table with all its keys.
 Vectors are three numbers in a right-handed world, lengths in world units.
+In the place of any number, vector, colour or list of such a track may stand, its value over time:
+  radius = { times = [0, 2], values = [0.1, 0.5] }; `energywave render SCENE -o FILE --time 1`
+  radius = { value = 0.3, noise = { amplitude = 0.1, frequency = 5 } }
 "
     .to_owned();
     let mut told: Vec<KeyGroup> = Vec::new();
-    for table in tables() {
+    for table in tables().into_iter().chain(track_tables()) {
         let is_new = |group: &&KeyGroup| group.of.is_empty() || !told.contains(group);
         let groups: Vec<KeyGroup> = table.groups.iter().filter(is_new).copied().collect();
         let others = table.groups.iter().filter(|group| !groups.contains(group));
@@ -40,7 +45,7 @@ Vectors are three numbers in a right-handed world, lengths in world units.
 pub fn of(name: &str) -> Result<String, Error> {
     let bare = name.trim_matches(['[', ']']);
     let Some(table) = table(bare) else {
-        let tables = tables();
+        let tables: Vec<Table> = tables().into_iter().chain(track_tables()).collect();
         let names: Vec<&str> = tables.iter().map(|table| table.name).collect();
         return Err(unknown("no table of a scene file", name, &names));
     };
@@ -78,6 +83,7 @@ fn line(key: &Key) -> String {
             form => format!("{unit}, {form}"),
         },
     };
+    let absent = format!("{absent} "); // some are longer than the column
     let mut text = format!("  {:NAME$}{absent:ABSENT$}", key.name);
     let mut column = text.chars().count();
     for word in format!("{} ({kind})", key.help).split(' ') {
@@ -117,6 +123,8 @@ fn form(form: &Form) -> String {
         Form::Numbers(least, most) => counted(least, most, "numbers"),
         Form::Vectors(least, most) => counted(least, most, "vectors"),
         Form::Colors(least) => counted(least, None, "colours"),
+        Form::TrackValue => "number, or list".to_owned(),
+        Form::TrackValues(least) => counted(least, None, "numbers or lists"),
         Form::Table(name) => format!("table: help scene {name}"),
         Form::Tables(name) => format!("list of tables: help scene {name}"),
         _ => String::new(),

@@ -44,7 +44,7 @@ impl<'de> Visitor<'de> for ColorVisitor {
 }
 
 /// Returns the linear RGB of an sRGB colour `#rrggbb`.
-fn from_hex(text: &str) -> Option<DVec3> {
+pub(super) fn from_hex(text: &str) -> Option<DVec3> {
     let digits = text.strip_prefix('#')?;
     if digits.len() != 6 || !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
         return None;

@@ -36,10 +36,12 @@ mod light_group;
 mod list;
 #[cfg(feature = "files")]
 mod preset;
+mod random;
 mod ray;
 mod reduction;
 mod source;
 mod stamp;
+mod track;
 mod validate;
 mod values;
 mod warnings;
@@ -52,7 +54,7 @@ pub(crate) use depth_layers::DepthLayers;
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;
 #[cfg(feature = "files")]
-pub use file::MethodKeys;
+pub use file::{AnimatedScene, MethodKeys};
 pub use group::{Group, Repeat, Rotation};
 pub use integration::{
     Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
@@ -63,6 +65,7 @@ pub use preset::Preset;
 pub use ray::{Ray, ViewPlane};
 pub use source::*;
 pub(crate) use stamp::SourcesStamp;
+pub use track::{Interpolation, Track, TrackLoop, TrackNoise, TrackValue};
 pub(crate) use validate::CheckedSources;
 
 use crate::image::{DepthImage, Display, ImageSize};

@@ -34,6 +34,12 @@ impl Fault {
         &self.key
     }
 
+    /// Says what is wrong.
+    #[cfg(feature = "files")]
+    pub(super) fn message(&self) -> &str {
+        &self.message
+    }
+
     /// Moves the fault to another key.
     pub(crate) fn at(self, key: Cow<'static, str>) -> Self {
         Self { key, ..self }

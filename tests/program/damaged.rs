@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use crate::common;
 use energywave::image::{DepthAlong, DepthImage};
+use energywave::scene::AnimatedScene;
 use energywave::{ErrorKind, RadianceImage, Scene};
 
 /// How often each file is changed.
@@ -158,6 +159,16 @@ const PLACED_JSON: &str = r#"{"camera": {"eye": [0, -4, 2], "target": [0, 0, 0]}
     "rotate": {"axis": [0, 0, 1], "angle": 9}, "repeat": {"count": 12, "axis": [0, 1, 0]}, "group": [
     {"torus": [{"major_radius": 3, "layers": [{"radius": 0.5}]}], "repeat": {"count": 3, "step": [1, 2, 3]}}]}]}"#;
 
+/// A scene that moves.
+const MOVING_TOML: &str = "[camera]\neye = { times = [0, 1], values = [[0, -4, 2], [1, -4, 2]] }\n\
+    target = [0, 0, 0]\n[time]\nloop = 3\n[[torus]]\nmajor_radius = { times = [0, 1, 3], values = [1, 2, 1.5], \
+    phase = 0.3, interpolation = \"smooth\", \
+    loop = \"repeat\" }\ncolor = { times = [0, 1], values = [\"#ff8000\", [0, 1, 2]], \
+    interpolation = \"step\" }\n[torus.coefficient]\nvalue = 3\nnoise = { amplitude = 2, frequency = 3, octaves = 2 }\n\
+    [[group]]\n[[group.path]]\npoints = { times = [0, 2], values = [[[0, 0, 0], [1, 1, 1]], [[0, 0, 0], [0, 0, 1]], \
+    [[1, 0, 0], [1, 1, 2]], [[0, 0, 0], [0, 1, 0]], [[1, 1, 0], [1, 1, 3]], [[0, 0, 0], [0, 0, 0]]], \
+    interpolation = \"cubic\" }\n";
+
 #[test]
 fn a_damaged_scene_ends_in_a_result_or_an_error() {
     let mut scenes: Vec<(String, String)> = common::scene_files()
@@ -169,8 +180,16 @@ fn a_damaged_scene_ends_in_a_result_or_an_error() {
         })
         .collect();
     scenes.push((PLACED_TOML.to_owned(), PLACED_JSON.to_owned()));
+    let moving: serde_json::Value = toml::from_str(MOVING_TOML).unwrap();
+    AnimatedScene::from_toml(MOVING_TOML)
+        .unwrap()
+        .at(0.7)
+        .unwrap();
+    for _ in 0..20 {
+        scenes.push((MOVING_TOML.to_owned(), moving.to_string()));
+    }
     let (mut read, mut refused) = (0, 0);
-    let mut check = |bytes: Vec<u8>, parse: fn(&str) -> energywave::Result<Scene>| {
+    let mut check = |bytes: Vec<u8>, parse: &dyn Fn(&str) -> energywave::Result<Scene>| {
         let text = String::from_utf8_lossy(&bytes);
         match parse(&text) {
             Ok(_) => read += 1,
@@ -184,8 +203,14 @@ fn a_damaged_scene_ends_in_a_result_or_an_error() {
         for (index, (toml, json)) in scenes.iter().enumerate() {
             let mut random = fastrand::Rng::with_seed(seed << 8 | index as u64);
             for _ in 0..CHANGES / 3 {
-                check(change(&mut random, toml.as_bytes()), Scene::from_toml);
-                check(change(&mut random, json.as_bytes()), Scene::from_json);
+                let time = random.f64() * 4.0 - 1.0;
+                let (toml, json) = (toml.as_bytes(), json.as_bytes());
+                check(change(&mut random, toml), &|text| {
+                    AnimatedScene::from_toml(text)?.at(time)
+                });
+                check(change(&mut random, json), &|text| {
+                    AnimatedScene::from_json(text)?.at(time)
+                });
             }
         }
     }
@@ -194,12 +219,12 @@ fn a_damaged_scene_ends_in_a_result_or_an_error() {
         "[", "{", "a.", "{a=", "[[", "{\"a\":", "\"", "'''", "#", "\\",
     ] {
         let deep = piece.repeat(100_000);
-        check(deep.clone().into_bytes(), Scene::from_toml);
-        check(format!("x = {deep}").into_bytes(), Scene::from_toml);
-        check(deep.clone().into_bytes(), Scene::from_json);
+        check(deep.clone().into_bytes(), &Scene::from_toml);
+        check(format!("x = {deep}").into_bytes(), &Scene::from_toml);
+        check(deep.clone().into_bytes(), &Scene::from_json);
         check(
             format!("{{\"camera\": {deep}").into_bytes(),
-            Scene::from_json,
+            &Scene::from_json,
         );
     }
     println!("{read} read, {refused} refused");

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use energywave::scene::keys::{json_schema, tables};
+use energywave::scene::keys::{json_schema, tables, track_tables};
 
 use crate::common::program::{Folder, PROGRAM, expect, stderr};
 
@@ -18,7 +18,7 @@ fn said(folder: &Folder, arguments: &[&str]) -> String {
 fn help_scene_has_every_key_of_every_table_within_a_hundred_columns() {
     let folder = Folder::new();
     let all = said(&folder, &["help", "scene"]);
-    for table in tables() {
+    for table in tables().into_iter().chain(track_tables()) {
         assert!(all.contains(&table.header()), "{}", table.name);
         let one = said(&folder, &["help", "scene", table.name]);
         assert!(one.starts_with(&table.header()), "{one}");

@@ -1,7 +1,8 @@
-//! Random numbers that are functions of what they belong to: the mixer of SplitMix64 (Steele, Lea, Flood 2014) over the
-//! words that name a number.
+//! The noise that displaces cores: a function of what it belongs to.
 
 use glam::DVec2;
+
+use crate::scene::random;
 
 /// Value noise of one core or branch.
 #[derive(Debug, Clone, Copy)]
@@ -20,22 +21,10 @@ enum Purpose {
     Lattice,
 }
 
-/// 2^-53: words of 53 bits become numbers in [0,1).
-const UNIT: f64 = 1.0 / (1_u64 << 53) as f64;
-
 impl Noise {
-    fn word(&self, purpose: Purpose, words: [u64; 3]) -> u64 {
-        let named = [u64::from(self.seed), u64::from(self.arm), purpose as u64];
-        named.into_iter().chain(words).fold(0, |state, word| {
-            let mut z = (state ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15);
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            z ^ (z >> 31)
-        })
-    }
-
     fn unit(&self, purpose: Purpose, words: [u64; 3]) -> f64 {
-        (self.word(purpose, words) >> 11) as f64 * UNIT
+        let named = [u64::from(self.seed), u64::from(self.arm), purpose as u64];
+        random::unit(named.into_iter().chain(words))
     }
 
     /// Returns a vector of the disc of radius 1: of a square, each row of which is made as long as the disc is there.

@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::scene::camera::{read_matrix, write_matrix};
 use crate::scene::values::{Fault, finite};
 
-#[derive(Deserialize, Serialize)]
+#[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct DepthTable {
     /// From the folder of the scene.

@@ -14,7 +14,7 @@ use crate::image::{Alpha, Background, BackgroundImage, Bloom, Display, Exposure,
 use crate::scene::Scene;
 use crate::scene::colors::read_color;
 
-#[derive(Default, Deserialize, Serialize)]
+#[derive(Debug, Clone, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct DisplayTable {
     exposure: Option<ExposureKey>,
@@ -118,6 +118,7 @@ impl DisplayTable {
 }
 
 /// Stops, or "auto".
+#[derive(Debug, Clone)]
 struct ExposureKey(Exposure);
 
 impl<'de> Deserialize<'de> for ExposureKey {
@@ -166,6 +167,7 @@ impl Serialize for ExposureKey {
 }
 
 /// A colour, or the name of a file.
+#[derive(Debug, Clone)]
 enum BackgroundKey {
     Color([f64; 3]),
     File(PathBuf),

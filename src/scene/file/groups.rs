@@ -12,7 +12,7 @@ use crate::scene::*;
 macro_rules! define_group_table {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         /// A group as a file describes it.
-        #[derive(Deserialize)]
+        #[derive(Debug, Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub(super) struct GroupTable {
             #[serde(default = "one")]

@@ -7,7 +7,7 @@ use crate::scene::values::{Checked, Fault};
 use crate::scene::{Antialias, Integration, Measure, Method, Reduction, Sampling};
 
 /// `[integration]`: keys of all methods may stand there, whichever is chosen.
-#[derive(Deserialize, Serialize)]
+#[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct IntegrationTable {
     method: MethodName,

@@ -1,38 +1,50 @@
 //! Scenes as JSON, of the same structure as the TOML. Faults of values have a key in place of line and column.
 
-use std::path::Path;
+use serde::de::DeserializeOwned;
 
+use super::moving::Moving;
 use super::numbers::around;
-use super::words::{Language, name_missing, no_value, plain};
-use super::{Adjust, Read, SceneFile, check_memory, empty_file};
+use super::tracks::may_have_tracks;
+use super::words::{Language, no_value, reworded};
+use super::{SceneFile, TRACKS_FACTOR, check_memory, empty_file};
 use crate::error::{Error, Result, SceneError};
 use crate::scene::Scene;
-use crate::scene::values::unnamed;
+
+/// What a JSON scene is written in.
+pub(super) const LANGUAGE: Language = Language::Json;
 
 /// Bytes that reading takes for each byte of a text, at most.
 const MEMORY_FACTOR: u64 = 12;
 
-/// Reads and checks a scene.
-pub(super) fn read(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Read> {
+/// Reads a scene, and what of it changes.
+pub(super) fn read(text: &str) -> Result<(SceneFile, Moving)> {
     let text = text.trim_start_matches('\u{feff}');
     if text.trim().is_empty() {
         return Err(empty_file().into());
     }
-    check_memory("the scene", text.len(), MEMORY_FACTOR)?;
+    if !may_have_tracks(text) {
+        check_memory("the scene", text.len(), MEMORY_FACTOR)?;
+        return Ok((parsed(text)?, Moving::default()));
+    }
+    check_memory("the scene", text.len(), MEMORY_FACTOR + TRACKS_FACTOR)?;
+    match Moving::read_document(parsed(text)?, Language::Json)? {
+        Some(read) => Ok(read),
+        None => Ok((parsed(text)?, Moving::default())),
+    }
+}
+
+/// Reads a text as what is asked for.
+fn parsed<T: DeserializeOwned>(text: &str) -> Result<T> {
     let mut reader = serde_json::Deserializer::from_str(text);
-    let file: SceneFile = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+    let read = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
         let key = error.path().to_string();
         let key = key.trim_end_matches(['?', '.']).to_owned();
         let inner = error.inner();
         let words = inner.to_string();
         let words = without_position(&words);
-        let (key, message) = if let Some((field, message)) = unnamed(words) {
-            (format!("{key}.{field}"), message.to_owned())
-        } else if let Some(message) = bad_value(text, inner, &key) {
-            (key, message)
-        } else {
-            let (key, words) = plain(Language::Json, key, words);
-            name_missing(key, words)
+        let (key, message) = match bad_value(text, inner, &key) {
+            Some(message) => (key, message),
+            None => reworded(Language::Json, key, words),
         };
         SceneError {
             path: None,
@@ -47,7 +59,7 @@ pub(super) fn read(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Read
         key: String::new(),
         message: without_position(&error.to_string()).to_owned(),
     })?;
-    file.into_scene(folder, adjust)
+    Ok(read)
 }
 
 /// Writes a scene.

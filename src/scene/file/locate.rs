@@ -35,6 +35,14 @@ impl KeyMap {
             .map(|entry| entry.value.start)
     }
 
+    /// Returns the byte offset at which the name of `path` stands, or that of the nearest key that encloses it.
+    pub(super) fn name_of(&self, path: &str) -> Option<usize> {
+        let exact = self.entries.iter().find(|entry| entry.path == path);
+        exact
+            .map(|entry| entry.key.start)
+            .or_else(|| self.offset_of(path))
+    }
+
     /// Returns the innermost key that encloses a byte range, with its value or by its name.
     pub(super) fn path_at(&self, range: &Range<usize>) -> Option<&str> {
         let encloses =

@@ -1,5 +1,6 @@
 //! Reads a scene from TOML or JSON; every fault is reported with file, line, column and key.
 
+mod animated;
 mod depth;
 mod display;
 mod groups;
@@ -7,11 +8,15 @@ mod integration;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
+mod moving;
 mod numbers;
 mod pieces;
 mod piped;
 mod scan;
+mod time;
 mod toml;
+mod tracks;
+mod tree;
 mod words;
 mod write;
 
@@ -23,6 +28,8 @@ use super::kinds::for_each_kind;
 use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
+pub use animated::AnimatedScene;
+use animated::Document;
 pub(super) use depth::DEPTH_KEYS;
 use depth::DepthTable;
 use display::DisplayTable;
@@ -33,6 +40,9 @@ pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
 pub use integration::MethodKeys;
 use scan::UNIT_COUNT;
+pub(super) use time::TIME_KEYS;
+use time::TimeTable;
+pub(super) use tracks::TRACK_KEYS;
 
 /// Changes a scene between its reading and its check.
 type Adjust<'a> = &'a mut dyn FnMut(&mut Scene, &MethodKeys) -> Result<()>;
@@ -43,7 +53,7 @@ type Read = (Scene, Vec<SceneError>);
 macro_rules! define_scene_file {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         /// A scene as a file describes it.
-        #[derive(Deserialize, Serialize)]
+        #[derive(Debug, Clone, Deserialize, Serialize)]
         #[serde(deny_unknown_fields)]
         struct SceneFile {
             camera: Camera,
@@ -59,6 +69,8 @@ macro_rules! define_scene_file {
             display: DisplayTable,
             #[serde(default, skip_serializing_if = "Option::is_none")]
             depth: Option<DepthTable>,
+            #[serde(default, skip_serializing)]
+            time: TimeTable,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
             #[serde(default, skip_serializing)]
             group: Vec<GroupTable>,
@@ -112,6 +124,23 @@ macro_rules! define_scene_file {
                 self.group.extend(run.group);
             }
 
+            /// Replaces sources and groups by those of a run of tables, which have these places.
+            fn replace(&mut self, run: SourceTables, indices: &[Vec<usize>; UNIT_COUNT]) {
+                let mut indices = indices.iter();
+                $(
+                    let places = indices.next().into_iter().flatten();
+                    if !run.$kind.is_empty() {
+                        let list: &mut Vec<$Type> = &mut self.$kind;
+                        for (index, source) in places.zip(run.$kind) {
+                            list[*index] = source;
+                        }
+                    }
+                )*
+                for (index, group) in indices.next().into_iter().flatten().zip(run.group) {
+                    self.group[*index] = group;
+                }
+            }
+
             /// Makes a file's scene as it is written.
             fn of(scene: &Scene, depth: Option<DepthTable>, display: DisplayTable) -> Self {
                 Self {
@@ -122,6 +151,7 @@ macro_rules! define_scene_file {
                     integration: IntegrationTable::of(&scene.integration),
                     display,
                     depth,
+                    time: TimeTable::default(),
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
                 }
@@ -143,13 +173,38 @@ fn is_empty<T>(list: &List<T>) -> bool {
 }
 
 impl SceneFile {
+    /// Returns after how many seconds the scene begins again.
+    fn period(&self) -> Option<f64> {
+        self.time.period()
+    }
+
+    /// Replaces the tables of which a scene has one.
+    fn replace_singles(&mut self, other: Self) {
+        self.camera = other.camera;
+        self.image = other.image;
+        self.decay = other.decay;
+        self.absorption = other.absorption;
+        self.integration = other.integration;
+        self.display = other.display;
+        self.depth = other.depth;
+        self.time = other.time;
+    }
+
     /// Checks the scene, lets `adjust` change it, reads a depth image and a background unless it has given them, and
     /// checks it again.
-    fn into_scene(mut self, folder: &Path, adjust: Adjust<'_>) -> Result<Read> {
+    fn into_scene(self, folder: &Path, adjust: Adjust<'_>) -> Result<Read> {
+        let (scene, groups) = self.into_checked(folder, adjust)?;
+        let warnings = groups.warnings(&scene);
+        Ok((scene, warnings))
+    }
+
+    /// Does the same without warnings.
+    fn into_checked(mut self, folder: &Path, adjust: Adjust<'_>) -> Result<(Scene, Groups)> {
         let mut scene = self.scene();
         self.integration
             .check()
             .map_err(|fault| fault.of("integration"))?;
+        self.time.check().map_err(|fault| fault.of("time"))?;
         let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
         groups.check(&scene)?;
         self.display.fit_exposure(&mut scene);
@@ -159,8 +214,7 @@ impl SceneFile {
         }
         self.display.read_background(folder, &mut scene)?;
         groups.check(&scene)?;
-        let warnings = groups.warnings(&scene);
-        Ok((scene, warnings))
+        Ok((scene, groups))
     }
 }
 
@@ -194,16 +248,7 @@ impl Scene {
         path: impl AsRef<Path>,
         mut adjust: impl FnMut(&mut Self, &MethodKeys) -> Result<()>,
     ) -> Result<(Self, Vec<SceneError>)> {
-        let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|error| {
-            Error::input(path, format!("cannot read: {error}")).caused_by(error)
-        })?;
-        if piped::is_piped(path) {
-            return piped::read(path, bytes, &mut adjust);
-        }
-        let text = text_of(path, bytes)?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        read_as(is_json(path), path, &text, folder, &mut adjust)
+        open(path.as_ref())?.into_frame(0.0, &mut adjust)
     }
 
     /// Reads and validates a scene in TOML; a depth image's path is from the working folder.
@@ -211,7 +256,8 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with line, column and key.
     pub fn from_toml(text: &str) -> Result<Self> {
-        Ok(toml::read(text, Path::new(""), &mut |_, _| Ok(()))?.0)
+        let document = Document::read(false, text, None, Path::new(""))?;
+        Ok(document.into_frame(0.0, &mut |_, _| Ok(()))?.0)
     }
 
     /// Reads and validates a scene in JSON, of the same structure as the TOML.
@@ -220,7 +266,8 @@ impl Scene {
     /// [`Error::Scene`] with the key; faults of the syntax have line and column too.
     #[cfg(feature = "json")]
     pub fn from_json(text: &str) -> Result<Self> {
-        Ok(json::read(text, Path::new(""), &mut |_, _| Ok(()))?.0)
+        let document = Document::read(true, text, None, Path::new(""))?;
+        Ok(document.into_frame(0.0, &mut |_, _| Ok(()))?.0)
     }
 }
 
@@ -228,6 +275,9 @@ fn is_json(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
 }
+
+/// Bytes that what changes takes for each byte of a text that has tracks, besides.
+const TRACKS_FACTOR: u64 = 16;
 
 /// Checks that a text of so many bytes can be read in the memory that there is, of which each byte takes `factor`.
 fn check_memory(what: &str, bytes: usize, factor: u64) -> Result<()> {
@@ -241,22 +291,16 @@ fn check_memory(what: &str, bytes: usize, factor: u64) -> Result<()> {
     }
 }
 
-fn read_as(
-    is_json: bool,
-    name: &Path,
-    text: &str,
-    folder: &Path,
-    adjust: Adjust<'_>,
-) -> Result<Read> {
-    let read = match is_json {
-        true => json::read(text, folder, adjust),
-        false => toml::read(text, folder, adjust),
-    };
-    let (scene, mut warnings) = read.map_err(|error| name_file(error, name))?;
-    for warning in &mut warnings {
-        warning.path = Some(name.to_owned());
+/// Opens a scene file.
+fn open(path: &Path) -> Result<Document<'static>> {
+    let bytes = std::fs::read(path)
+        .map_err(|error| Error::input(path, format!("cannot read: {error}")).caused_by(error))?;
+    if piped::is_piped(path) {
+        return piped::read(path, bytes);
     }
-    Ok((scene, warnings))
+    let text = text_of(path, bytes)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    Document::read(is_json(path), text, Some(path), folder)
 }
 
 fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String> {

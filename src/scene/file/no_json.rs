@@ -1,12 +1,15 @@
 //! Scenes as JSON, where the library was built without the feature `json`.
 
-use std::path::Path;
-
-use super::{Adjust, Read};
+use super::SceneFile;
+use super::moving::Moving;
+use super::words::Language;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
-pub(super) fn read(_: &str, _: &Path, _: Adjust<'_>) -> Result<Read> {
+/// Stands for JSON, of which nothing is read.
+pub(super) const LANGUAGE: Language = Language::Toml;
+
+pub(super) fn read(_: &str) -> Result<(SceneFile, Moving)> {
     Err(missing())
 }
 

@@ -47,7 +47,7 @@ impl<'a> Piece<'a> {
 }
 
 /// Takes the key of a source or a group apart: the place of its kind, its index, and the rest.
-fn source_key(key: &str) -> Option<(usize, usize, &str)> {
+pub(super) fn source_key(key: &str) -> Option<(usize, usize, &str)> {
     let (kind, rest) = key.split_once('[')?;
     let (index, rest) = rest.split_once(']')?;
     let kind = UNITS.iter().position(|it| *it == kind)?;

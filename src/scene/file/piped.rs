@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::{Adjust, MethodKeys, Read as ReadScene, read_as, text_of};
+use super::{Document, MethodKeys, text_of};
 use crate::error::{Error, Result, SceneError};
 use crate::scene::Scene;
 
@@ -26,15 +26,11 @@ impl Scene {
     /// # Errors
     /// As [`Scene::from_file_with`].
     pub fn from_reader_with_warnings(
-        mut reader: impl Read,
+        reader: impl Read,
         name: impl AsRef<Path>,
         mut adjust: impl FnMut(&mut Self, &MethodKeys) -> Result<()>,
     ) -> Result<(Self, Vec<SceneError>)> {
-        let (name, mut bytes) = (name.as_ref(), Vec::new());
-        reader.read_to_end(&mut bytes).map_err(|error| {
-            Error::input(name, format!("cannot read: {error}")).caused_by(error)
-        })?;
-        self::read(name, bytes, &mut adjust)
+        open(reader, name.as_ref())?.into_frame(0.0, &mut adjust)
     }
 }
 
@@ -45,12 +41,21 @@ pub(super) fn is_piped(path: &Path) -> bool {
     cfg!(unix) && (is_descriptor || std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()))
 }
 
-/// Reads and checks a scene.
-pub(super) fn read(name: &Path, bytes: Vec<u8>, adjust: Adjust<'_>) -> Result<ReadScene> {
+/// Opens what a pipe brings.
+pub(super) fn open(mut reader: impl Read, name: &Path) -> Result<Document<'static>> {
+    let mut bytes = Vec::new();
+    reader
+        .read_to_end(&mut bytes)
+        .map_err(|error| Error::input(name, format!("cannot read: {error}")).caused_by(error))?;
+    self::read(name, bytes)
+}
+
+/// Reads a scene.
+pub(super) fn read(name: &Path, bytes: Vec<u8>) -> Result<Document<'static>> {
     let text = text_of(name, bytes)?;
     let is_json = text
         .trim_start_matches('\u{feff}')
         .trim_start()
         .starts_with('{');
-    read_as(is_json, name, &text, Path::new(""), adjust)
+    Document::read(is_json, text, Some(name), Path::new(""))
 }

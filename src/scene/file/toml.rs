@@ -1,59 +1,59 @@
 //! Scenes as TOML. Faults have line, column and key.
 
 use std::ops::Range;
-use std::path::Path;
+
+use serde::de::DeserializeOwned;
 
 use super::locate::{KeyMap, line_and_column};
+use super::moving::Moving;
 use super::numbers::around;
 use super::pieces::{Piece, Pieces, RUN, WHOLE};
 use super::scan::{key_at, value_at};
+use super::tracks::{self, find, may_have_tracks};
+use super::tree::{Moment, Node};
 use super::words::{Language, name_missing, no_value, plain};
-use super::{Adjust, Read, SceneFile, SourceTables, check_memory, empty_file};
-use crate::error::{Error, Result, SceneError};
+use super::{SceneFile, SourceTables, TRACKS_FACTOR, check_memory, empty_file};
+use crate::error::{Result, SceneError};
 use crate::scene::values::unnamed;
 
 /// Bytes that reading takes for each byte of a text in pieces, and of a large piece: a list of short numbers.
 const MEMORY_FACTOR: u64 = 4;
 const PIECE_FACTOR: u64 = 96;
 
-/// Reads and checks a scene.
-pub(super) fn read(text: &str, folder: &Path, adjust: Adjust<'_>) -> Result<Read> {
+/// Reads a scene, and what of it changes.
+pub(super) fn read(text: &str) -> Result<(SceneFile, Moving)> {
     if text.trim().is_empty() {
         return Err(empty_file().into());
     }
-    check_memory("the scene", text.len(), MEMORY_FACTOR)?;
-    let pieces = Pieces::of(text, WHOLE, RUN);
-    let file = read_pieces(text, &pieces)?;
-    let placed = |mut fault: SceneError| {
-        fault.position = Some(locate(text, &pieces, &fault.key));
-        fault
+    let tracks = if may_have_tracks(text) {
+        TRACKS_FACTOR
+    } else {
+        0
     };
-    let (scene, warnings) = file
-        .into_scene(folder, adjust)
-        .map_err(|error| match error {
-            Error::Scene(fault) => placed(fault).into(),
-            other => other,
-        })?;
-    Ok((scene, warnings.into_iter().map(placed).collect()))
+    check_memory("the scene", text.len(), MEMORY_FACTOR + tracks)?;
+    read_pieces(text, &Pieces::of(text, WHOLE, RUN))
 }
 
 /// Reads the pieces one after another. Of several faults it gives the first.
-fn read_pieces(text: &str, pieces: &Pieces<'_>) -> Result<SceneFile> {
-    let mut first = None;
+fn read_pieces(text: &str, pieces: &Pieces<'_>) -> Result<(SceneFile, Moving)> {
+    let mut first: Option<SceneFile> = None;
+    let mut moving = Moving::default();
     let mut fault: Option<(usize, SceneError)> = None;
     for (index, piece) in pieces.list.iter().enumerate() {
         check_piece(&piece.text)?;
         let found = match index {
-            0 => toml::from_str(&piece.text).map(|file: SceneFile| first = Some(file)),
-            _ => toml::from_str(&piece.text).map(|run: SourceTables| {
-                if let Some(file) = &mut first {
-                    file.reserve(pieces.counts);
-                    file.add(run);
-                }
-            }),
+            0 => read_piece(text, piece, None, &mut moving).map(|file| first = Some(file)),
+            _ => {
+                let period = first.as_ref().map(SceneFile::period);
+                read_piece(text, piece, period, &mut moving).map(|run: SourceTables| {
+                    if let Some(file) = &mut first {
+                        file.reserve(pieces.counts);
+                        file.add(run);
+                    }
+                })
+            }
         };
-        if let Err(error) = found {
-            let (place, found) = fault_in(text, piece, &error);
+        if let Err((place, found)) = found {
             if fault.as_ref().is_none_or(|(before, _)| place < *before) {
                 fault = Some((place, found));
             }
@@ -63,10 +63,38 @@ fn read_pieces(text: &str, pieces: &Pieces<'_>) -> Result<SceneFile> {
         }
     }
     match (fault, first) {
-        (None, Some(file)) => Ok(file),
+        (None, Some(file)) => Ok((file, moving)),
         (Some((_, fault)), _) => Err(fault.into()),
         (None, None) => Err(empty_file().into()),
     }
+}
+
+/// Reads a piece as it is at 0 s, and takes what has tracks; `period` is that of the first piece, if it is another one.
+fn read_piece<T: DeserializeOwned>(
+    text: &str,
+    piece: &Piece<'_>,
+    period: Option<Option<f64>>,
+    moving: &mut Moving,
+) -> std::result::Result<T, (usize, SceneError)> {
+    if may_have_tracks(&piece.text)
+        && let Ok(mut document) = toml::from_str::<Node>(&piece.text)
+    {
+        let placed = |mut fault: SceneError| {
+            let place = piece.place(offset_in(&piece.text, &fault));
+            fault.key = piece.key(&fault.key);
+            fault.position = Some(line_and_column(text, place));
+            (place, fault)
+        };
+        let found = find(&mut document, Language::Toml).map_err(placed)?;
+        if !found.keys.is_empty() {
+            let start = period.map_or_else(|| document.start(), Moment::start);
+            let file = tracks::read(&document, start, Language::Toml)
+                .map_err(|(key, message)| placed(SceneError::value(key, message)))?;
+            moving.take(document, found, |key| piece.key(key), &piece.before);
+            return Ok(file);
+        }
+    }
+    toml::from_str(&piece.text).map_err(|error| fault_in(text, piece, &error))
 }
 
 /// Checks that a large piece can be read in the memory that there is.
@@ -79,11 +107,28 @@ fn check_piece(piece: &str) -> Result<()> {
     }
 }
 
-/// Returns line and column of a key's value, or of what encloses it.
-fn locate(text: &str, pieces: &Pieces<'_>, key: &str) -> (usize, usize) {
-    let (piece, inside) = pieces.piece_of(key);
-    let offset = KeyMap::new(&piece.text).offset_of(&inside);
-    line_and_column(text, piece.place(offset.unwrap_or(0)))
+/// Returns line and column of the value at fault, or of what encloses it.
+pub(super) fn place_of(text: &str, fault: &SceneError) -> (usize, usize) {
+    locate(text, &Pieces::of(text, WHOLE, RUN), fault)
+}
+
+fn locate(text: &str, pieces: &Pieces<'_>, fault: &SceneError) -> (usize, usize) {
+    let (piece, key) = pieces.piece_of(&fault.key);
+    let inside = SceneError {
+        key,
+        ..fault.clone()
+    };
+    line_and_column(text, piece.place(offset_in(&piece.text, &inside)))
+}
+
+/// Returns where in a piece the value at fault stands, or a key that there is not.
+fn offset_in(piece: &str, fault: &SceneError) -> usize {
+    let keys = KeyMap::new(piece);
+    let offset = match fault.message.starts_with("unknown field ") {
+        true => keys.name_of(&fault.key),
+        false => keys.offset_of(&fault.key),
+    };
+    offset.unwrap_or(0)
 }
 
 /// Makes the fault of syntax, type or key name that the TOML reader found in a piece, with its place in the text.
@@ -155,7 +200,10 @@ fn bad_value(piece: &str, span: &Range<usize>, message: &str) -> Option<(String,
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::error::Error;
     use crate::scene::Scene;
 
     const HEAD: &str = "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n";
@@ -164,11 +212,11 @@ mod tests {
     fn both_ways(text: &str) -> [std::result::Result<Scene, String>; 2] {
         [usize::MAX, 0].map(|whole| {
             let pieces = Pieces::of(text, whole, 1);
-            let file = read_pieces(text, &pieces).map_err(|error| error.to_string())?;
+            let (file, _) = read_pieces(text, &pieces).map_err(|error| error.to_string())?;
             let read = file.into_scene(Path::new(""), &mut |_, _| Ok(()));
             read.map(|(scene, _)| scene).map_err(|error| match error {
                 Error::Scene(fault) => {
-                    let place = locate(text, &pieces, &fault.key);
+                    let place = locate(text, &pieces, &fault);
                     format!("{place:?} {}", Error::Scene(fault))
                 }
                 other => other.to_string(),
@@ -231,6 +279,13 @@ mod tests {
             "[\"torus\"]\n",
             "[[spheres]]\ncoefficient = 1\n",
             "[decay]\nalpha = 1\n",
+            "[[torus]]\nmajor_radius = { times = [0, 0], values = [1, 2] }\n",
+            "[[torus]]\nmajor_radius = { times = [0, 1], values = [-1, 2] }\n",
+            "[[torus]]\nzoom = 1\nmajor_radius = { times = [0, 1], values = [1, 2] }\n",
+            "[[group]]\n[[group.torus]]\nmajor_radius = { times = [0, 1], values = [1, 2], zoom = 1 }\n",
+            "[[torus]]\ncoefficient = { times = [0, 1], values = [1, 2] }\n",
+            "[[sphere]]\ncolor = { times = [0, 1], values = [1, 2] }\n",
+            "[camera.fov_y]\ntimes = [0, 1]\n",
         ] {
             for text in [
                 format!("{HEAD}{fault}{good}{good}"),

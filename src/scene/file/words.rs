@@ -4,6 +4,7 @@ use super::numbers::{is_whole, meant};
 use super::scan::UNITS;
 use crate::nearest;
 use crate::scene::keys::{Table, tables};
+use crate::scene::values::unnamed;
 use crate::shown::shown;
 
 /// The language of a scene file.
@@ -15,7 +16,7 @@ pub(super) enum Language {
 }
 
 /// Tables of which a scene has one.
-const SINGLE: [&str; 7] = [
+const SINGLE: [&str; 8] = [
     "camera",
     "image",
     "decay",
@@ -23,7 +24,17 @@ const SINGLE: [&str; 7] = [
     "integration",
     "display",
     "depth",
+    "time",
 ];
+
+/// Puts a reader's message about a value, or a table without a key, into plain words; gives the key at fault, too.
+pub(super) fn reworded(language: Language, key: String, words: &str) -> (String, String) {
+    if let Some((field, message)) = unnamed(words) {
+        return (format!("{key}.{field}"), message.to_owned());
+    }
+    let (key, words) = plain(language, key, words);
+    name_missing(key, words)
+}
 
 /// Puts a message about the value of `key` into plain words, and says what to write; gives the key at fault, too.
 /// Serde speaks of Rust types, an author thinks of numbers.

@@ -11,7 +11,7 @@ use std::ops::Bound;
 
 #[cfg(feature = "json")]
 pub use schema::json_schema;
-pub use tables::{Count, KeyGroup, Table, table, tables};
+pub use tables::{Count, KeyGroup, Table, table, tables, track_tables};
 
 /// A key of a table of a scene file.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,10 +61,41 @@ pub enum Form {
     Vectors(u32, Option<u32>),
     /// So many colours, at least.
     Colors(u32),
+    /// What a track has values of: a number, or a list of numbers, vectors or colours.
+    TrackValue,
+    /// So many of such, at least.
+    TrackValues(u32),
     /// A table of this name, such as `arc`.
     Table(&'static str),
     /// A list of tables of this name, such as `layers`.
     Tables(&'static str),
+}
+
+impl Form {
+    /// Returns whether a track may stand in the place of such a value, or of a part of it.
+    #[must_use]
+    pub fn may_be_track(&self) -> bool {
+        match self {
+            Self::Number(..)
+            | Self::NumberOrNan
+            | Self::NumberOr(..)
+            | Self::Color
+            | Self::ColorOrFile
+            | Self::Matrix
+            | Self::Numbers(..)
+            | Self::Vectors(..)
+            | Self::Colors(_) => true,
+            Self::Whole(..)
+            | Self::Flag
+            | Self::Text
+            | Self::File
+            | Self::Word(_)
+            | Self::TrackValue
+            | Self::TrackValues(_)
+            | Self::Table(_)
+            | Self::Tables(_) => false,
+        }
+    }
 }
 
 /// What holds where a key is left out.

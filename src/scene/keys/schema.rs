@@ -4,7 +4,7 @@ use std::ops::Bound;
 
 use serde_json::{Map, Value, json};
 
-use super::{Absent, Count, Form, Key, Table, tables};
+use super::{Absent, Count, Form, Key, Table, tables, track_tables};
 
 /// Returns the JSON Schema of scene files, draft 2020-12. What it refuses the reader refuses; what depends on several
 /// keys, such as a `peak` that needs a radius, only the reader knows.
@@ -28,10 +28,23 @@ pub fn json_schema() -> String {
         }
         properties.insert(table.name.to_owned(), schema);
     }
-    let definitions: Map<String, Value> = tables
+    let mut definitions: Map<String, Value> = tables
         .iter()
-        .map(|table| (table.name.to_owned(), definition(table)))
+        .map(|table| {
+            (
+                table.name.to_owned(),
+                definition(table, table.name != "time"),
+            )
+        })
         .collect();
+    let of_tracks = track_tables();
+    let of_tracks = of_tracks.iter();
+    definitions.extend(of_tracks.map(|table| (table.name.to_owned(), definition(table, false))));
+    definitions["track"]["anyOf"] =
+        json!([{ "required": ["times", "values"] }, { "required": ["value", "noise"] }]);
+    let items = list_of(reference("track_value"), 1, None);
+    let value = json!({ "anyOf": [{ "type": "number" }, hexadecimal(), items] });
+    definitions.insert("track_value".to_owned(), value);
     let schema = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A scene of energywave",
@@ -48,10 +61,11 @@ fn reference(table: &str) -> Value {
     json!({ "$ref": format!("#/$defs/{table}") })
 }
 
-fn definition(table: &Table) -> Value {
+/// Returns what a table is; in some, tracks may stand in the place of values.
+fn definition(table: &Table, may_move: bool) -> Value {
     let properties: Map<String, Value> = table
         .keys()
-        .map(|key| (key.name.to_owned(), property(key)))
+        .map(|key| (key.name.to_owned(), property(key, may_move)))
         .collect();
     let required: Vec<&str> = table
         .keys()
@@ -82,8 +96,9 @@ fn choices(table: &Table) -> Option<Value> {
     Some(json!([{ "required": keys }, { "required": [other] }]))
 }
 
-fn property(key: &Key) -> Value {
-    let mut schema = form(&key.form);
+fn property(key: &Key, may_move: bool) -> Value {
+    let may_move = may_move && key.form.may_be_track();
+    let mut schema = or_track(form(&key.form, may_move), may_move);
     let mut description = key.help.to_owned();
     if !key.unit.is_empty() {
         description += &format!(" ({})", key.unit);
@@ -107,13 +122,25 @@ fn value_of(text: &str) -> Option<Value> {
     serde_json::from_str(text).ok()
 }
 
-fn form(form: &Form) -> Value {
+/// Adds a track to what a value may be.
+fn or_track(schema: Value, may_move: bool) -> Value {
+    match may_move {
+        true => json!({ "anyOf": [schema, reference("track")] }),
+        false => schema,
+    }
+}
+
+fn hexadecimal() -> Value {
+    json!({ "type": "string", "pattern": "^#[0-9a-fA-F]{6}$" })
+}
+
+/// Returns what a value may be; of some lists, the items may be tracks.
+fn form(form: &Form, may_move: bool) -> Value {
     let number = || json!({ "type": "number" });
-    let vector = || list_of(number(), 3, Some(3));
-    let color = || {
-        let hex = json!({ "type": "string", "pattern": "^#[0-9a-fA-F]{6}$" });
-        json!({ "anyOf": [vector(), hex] })
-    };
+    let item = |schema| or_track(schema, may_move);
+    let numbers = |least, most| list_of(item(number()), least, most);
+    let vector = || numbers(3, Some(3));
+    let color = || json!({ "anyOf": [vector(), hexadecimal()] });
     match *form {
         Form::Number(least, most) => {
             let mut schema = number();
@@ -139,17 +166,19 @@ fn form(form: &Form) -> Value {
         }
         Form::ColorOrFile => json!({ "anyOf": [vector(), { "type": "string" }] }),
         Form::Matrix => {
-            let row = list_of(number(), 4, Some(4));
-            json!({ "anyOf": [list_of(number(), 16, Some(16)), list_of(row, 4, Some(4))] })
+            let row = item(numbers(4, Some(4)));
+            json!({ "anyOf": [numbers(16, Some(16)), list_of(row, 4, Some(4))] })
         }
         Form::NumberOrNan => json!({ "anyOf": [number(), { "const": "nan" }] }),
         Form::Flag => json!({ "type": "boolean" }),
         Form::Text | Form::File => json!({ "type": "string" }),
         Form::Word(words) => json!({ "enum": words }),
         Form::Color => color(),
-        Form::Numbers(least, most) => list_of(number(), least, most),
-        Form::Vectors(least, most) => list_of(vector(), least, most),
-        Form::Colors(least) => list_of(color(), least, None),
+        Form::Numbers(least, most) => numbers(least, most),
+        Form::Vectors(least, most) => list_of(item(vector()), least, most),
+        Form::Colors(least) => list_of(item(color()), least, None),
+        Form::TrackValue => reference("track_value"),
+        Form::TrackValues(least) => list_of(reference("track_value"), least, None),
         Form::Table(name) => reference(name),
         Form::Tables("layers") => list_of(reference("layers"), 1, Some(16)),
         Form::Tables(name) => list_of(reference(name), 0, None),

@@ -4,11 +4,14 @@ use super::Key;
 use super::words::*;
 use crate::image::ImageSize;
 use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
-use crate::scene::file::{BLOOM_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS};
+use crate::scene::file::{
+    BLOOM_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS, TIME_KEYS, TRACK_KEYS,
+};
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
 use crate::scene::kinds::for_each_kind;
 use crate::scene::source::{LAYER_KEYS, SHARED_KEYS, SourceKind, *};
+use crate::scene::track::NOISE_KEYS;
 
 /// What is read of `[image]`, whose type knows no scene.
 const IMAGE_KEYS: &[Key] = &[
@@ -174,6 +177,12 @@ pub fn tables() -> Vec<Table> {
             "What hides the light; without it, nothing",
             DEPTH_KEYS,
         ),
+        Table::new(
+            "time",
+            Once,
+            "When the scene begins again, if anything of it moves",
+            TIME_KEYS,
+        ),
     ];
     tables.extend(kind_tables());
     let mut group = Table::new(
@@ -223,8 +232,20 @@ pub fn tables() -> Vec<Table> {
     tables
 }
 
+/// Returns what a track has, which may stand in the place of numbers, vectors, colours and lists of such
+/// ([`Form::may_be_track`]), and what its noise has.
+#[must_use]
+pub fn track_tables() -> Vec<Table> {
+    let table = |name, about, keys| Table::new(name, Count::Inside, about, keys);
+    vec![
+        table("track", "A value as a function of time", TRACK_KEYS),
+        table("noise", "Noise that is added to a track", NOISE_KEYS),
+    ]
+}
+
 /// Returns the table of this name.
 #[must_use]
 pub fn table(name: &str) -> Option<Table> {
-    tables().into_iter().find(|table| table.name == name)
+    let mut tables = tables().into_iter().chain(track_tables());
+    tables.find(|table| table.name == name)
 }

@@ -1,5 +1,6 @@
 //! The tables of keys against what serde reads, and the schema against both, and against every scene.
 
+mod tracks;
 mod validator;
 
 use std::collections::BTreeSet;
@@ -9,7 +10,7 @@ use std::path::Path;
 
 use serde_json::Value as Json;
 
-use super::{Absent, Count, Form, Key, Table, json_schema, table, tables};
+use super::{Absent, Count, Form, Key, Table, json_schema, table, tables, track_tables};
 use crate::scene::file::raw_fault;
 use crate::scene::{Preset, Scene};
 use validator::{refusal, refusal_of_table};
@@ -34,6 +35,8 @@ fn sample(key: &Key) -> String {
         }
         Form::Vectors(least, _) => format!("[{}]", vec!["[1, 2, 3]"; least as usize].join(", ")),
         Form::Colors(least) => format!("[{}]", vec!["\"#ff8800\""; least as usize].join(", ")),
+        Form::TrackValue => "0.5".to_owned(),
+        Form::TrackValues(least) => format!("[{}]", vec!["0.5"; least as usize].join(", ")),
         Form::Table(name) => inline(&table(name).unwrap()),
         Form::Tables(name) => format!("[{}]", inline(&table(name).unwrap())),
     }
@@ -349,7 +352,7 @@ fn the_schema_takes_every_scene_and_no_broken_one() {
 fn the_documentation_of_scenes_names_every_key() {
     let text =
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scenes.md")).unwrap();
-    for table in tables() {
+    for table in tables().into_iter().chain(track_tables()) {
         for key in table.keys() {
             let name = key.name;
             assert!(
