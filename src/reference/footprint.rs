@@ -5,8 +5,10 @@ use glam::DVec3;
 use super::{Source, Tracer};
 use crate::scene::{Ray, Scene, ViewPlane};
 
-/// Within so many pixels from a core a pixel is a mean.
+/// Within so many pixels from a core a pixel is a mean; farther off where some light ends at a reach, towards which it
+/// curves all the way.
 const NEAR: f64 = 8.0;
+const NEAR_REACH: f64 = 24.0;
 
 /// A square is cut as long as a core is nearer than so many of its sides.
 const CLEAR: f64 = 1.5;
@@ -62,8 +64,13 @@ impl PixelView<'_> {
     }
 
     pub(super) fn is_mean(&self) -> bool {
+        let has_reach = |source: &Source| source.falloff.reach.is_some();
+        let near = match self.tracer.sources.iter().any(has_reach) {
+            true => NEAR_REACH,
+            false => NEAR,
+        };
         let has_footprints = self.tracer.integration.has_footprints();
-        has_footprints && self.clearance(self.center()).0 < NEAR
+        has_footprints && self.clearance(self.center()).0 < near
     }
 
     /// Returns column and row.
