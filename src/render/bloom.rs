@@ -17,7 +17,7 @@ impl Renderer {
     ///
     /// ```no_run
     /// # fn main() -> energywave::Result<()> {
-    /// # let (device, mut scene) = (energywave::Device::best()?, energywave::Scene::default());
+    /// # let (device, mut scene) = (energywave::Device::best()?, energywave::Scene::from_file("laser.toml")?);
     /// scene.display.bloom = Some(energywave::image::Bloom::new(0.2));
     /// let mut renderer = energywave::Renderer::new(&device)?;
     /// renderer.spread_bloom(true);
