@@ -57,7 +57,9 @@ fn blooms(criterion: &mut Criterion) {
                 least = (least.0.min(begun.elapsed()), least.1.min(cost.kernel));
             });
         });
-        println!("least time: {:?}, in kernels {:?}", least.0, least.1);
+        if least.0 < Duration::MAX {
+            println!("least time: {:?}, in kernels {:?}", least.0, least.1);
+        }
     }
 }
 
