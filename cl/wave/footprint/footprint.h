@@ -33,8 +33,8 @@
 // changes its mean, a part stays.
 #ifndef HALVED_FROM // a test spoils it
 #define HALVED_FROM 3e-3f
-#define QUARTERED_FROM (4.0f * HALVED_FROM)
 #endif
+#define QUARTERED_FROM (4.0f * HALVED_FROM)
 #define BEND_DOUBT 0.5f
 #define TRUST_IN_RIM 0.75f
 // No ray passes a core closer than this, nor the rim; by so much farther off does the second ray.
