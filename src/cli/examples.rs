@@ -14,6 +14,7 @@ Examples:
   energywave render laser.toml -o laser.png
   energywave render laser.toml -o laser.exr --size 320x180 --tolerance 1e-4
   energywave render laser.toml -o laser.png --device reference --quiet
+  energywave render laser.toml -o laser.png --time 1.5 --fps 24
   energywave new nova -o - | energywave render - -o nova.png --size 320x180";
 
 pub const NEW: &str = "\

@@ -3,6 +3,7 @@
 mod animated;
 mod depth;
 mod display;
+mod document;
 mod groups;
 mod integration;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
@@ -29,11 +30,11 @@ use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
 pub use animated::AnimatedScene;
-use animated::Document;
 pub(super) use depth::DEPTH_KEYS;
 use depth::DepthTable;
 use display::DisplayTable;
 pub(super) use display::{BLOOM_KEYS, DISPLAY_KEYS};
+use document::Document;
 pub(super) use groups::GROUP_KEYS;
 use groups::{GroupTable, Groups};
 pub(super) use integration::INTEGRATION_KEYS;
