@@ -12,6 +12,7 @@ use energywave::{Error, RendererOptions, SlowStart};
 use super::examples;
 use super::subcommands::*;
 use super::warn;
+use super::watch::WatchArguments;
 
 /// Volumetric energy effects, integrated along every view ray on any OpenCL device.
 #[derive(Debug, Parser)]
@@ -29,6 +30,9 @@ pub enum Command {
     /// Draw a scene
     #[command(after_help = examples::RENDER)]
     Render(RenderArguments),
+    /// Draw a scene again whenever it is saved: to a file, or in a window
+    #[command(after_help = examples::WATCH)]
+    Watch(WatchArguments),
     /// Write a scene to begin with: a preset, with comments that say what to change
     #[command(after_help = examples::NEW)]
     New(NewArguments),
@@ -388,7 +392,7 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-fn time(text: &str) -> Result<f64, String> {
+pub(super) fn time(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(time) if f64::abs(time) <= 1e9 => Ok(time),
         _ => Err("a time is a number of seconds, such as 1.5".to_owned()),

@@ -16,6 +16,7 @@ mod render;
 mod scene_help;
 mod subcommands;
 mod verify;
+mod watch;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -60,6 +61,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
     warnings.iter().for_each(|warning| warn(warning));
     let outcome = match arguments.command {
         Command::Render(arguments) => render::run(arguments),
+        Command::Watch(arguments) => watch::run(arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

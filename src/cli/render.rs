@@ -170,7 +170,12 @@ fn check_bits(arguments: &RenderArguments, format: ImageFormat) -> Result<(), Er
 }
 
 /// Says in the file what it shows, and how that was made.
-fn noted(output: ImageFile, name: &Path, scene: &Scene, devices: &[Device]) -> ImageFile {
+pub(super) fn noted(
+    output: ImageFile,
+    name: &Path,
+    scene: &Scene,
+    devices: &[Device],
+) -> ImageFile {
     let name = match name == Path::new("-") {
         true => "standard input".to_owned(),
         false => shown(&name.file_name().unwrap_or_default().to_string_lossy()),
@@ -183,7 +188,7 @@ fn noted(output: ImageFile, name: &Path, scene: &Scene, devices: &[Device]) -> I
 }
 
 /// Says what was drawn.
-fn drawn(
+pub(super) fn drawn(
     image: &RadianceImage,
     scene: &Scene,
     moments: u32,

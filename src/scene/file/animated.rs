@@ -29,7 +29,7 @@ use crate::image::{Background, DepthImage};
 /// ```
 #[derive(Debug)]
 pub struct AnimatedScene {
-    document: Document<'static>,
+    pub(super) document: Document<'static>,
     files: OnceLock<Files>,
 }
 
