@@ -207,6 +207,8 @@ fn what_cannot_be_watched_is_refused() {
         3,
         "b.toml: cannot read",
     );
+    expect(&watch(&[".", "-o", "out.png"]), 3, ".: cannot read");
+    expect(&watch(&["a.toml", "-o", "-"]), 2, "unknown output ending");
     expect(
         &watch(&["-", "-o", "out.png"]),
         2,

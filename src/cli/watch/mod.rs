@@ -61,7 +61,6 @@ fn to_file(arguments: WatchArguments, output: &Path) -> Outcome {
     ImageFile::create(output)?; // refused before the work
     catch_interrupts();
     let mut pictures = Pictures::open(arguments)?;
-    pictures.refuse_output(output)?;
     loop {
         let begun = Instant::now();
         match draw_to(&mut pictures, output, format, begun) {

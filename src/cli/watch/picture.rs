@@ -42,14 +42,18 @@ pub struct Picture {
 pub type Change<'a> = &'a dyn Fn(&mut Scene);
 
 impl Pictures {
-    /// Opens a device; the scene's file must be there.
+    /// Opens a device; the scene's file must be there, and the output be no file that is watched.
     pub fn open(arguments: WatchArguments) -> Result<Self, crate::cli::Failure> {
         let mut files = vec![arguments.scene.clone()];
         files.extend(arguments.overrides.depth.clone());
         let changes = Changes::of(&files)?;
-        if let Err(error) = std::fs::metadata(&arguments.scene) {
-            let reason = format!("cannot read: {error}");
-            return Err(Error::input(&arguments.scene, reason).into());
+        match AnimatedScene::from_file(&arguments.scene) {
+            Ok(scene) => files.extend(scene.files()),
+            Err(error) if error.kind() == ErrorKind::Input => return Err(error.into()),
+            Err(_) => {} // which is told when it is to be drawn
+        }
+        if let Some(output) = &arguments.output {
+            refuse_output(output, &files)?;
         }
         let devices = choose_devices(arguments.device.device.as_deref())?;
         let renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
@@ -61,20 +65,6 @@ impl Pictures {
             warned: Vec::new(),
             arguments,
         })
-    }
-
-    /// Refuses an output whose writing would be a change.
-    pub fn refuse_output(&self, output: &Path) -> Result<(), Error> {
-        let of_scene = AnimatedScene::from_file(&self.arguments.scene).map(|scene| scene.files());
-        let mut files = of_scene.unwrap_or_default();
-        files.push(self.arguments.scene.clone());
-        files.extend(self.arguments.overrides.depth.clone());
-        let place = |file: &Path| file.canonicalize().ok();
-        let is_it = |file: &PathBuf| place(file).is_some() && place(file) == place(output);
-        match files.iter().any(is_it) {
-            true => Err(Error::output(output, "it is a file that is watched")),
-            false => Ok(()),
-        }
     }
 
     /// Returns the scene as it was read last.
@@ -183,6 +173,16 @@ impl Pictures {
             scene,
             moments: renderer.last_moments(),
         })
+    }
+}
+
+/// Refuses an output whose writing would be a change.
+fn refuse_output(output: &Path, files: &[PathBuf]) -> Result<(), Error> {
+    let place = |file: &Path| file.canonicalize().ok();
+    let is_it = |file: &PathBuf| place(file).is_some() && place(file) == place(output);
+    match files.iter().any(is_it) {
+        true => Err(Error::output(output, "it is a file that is watched")),
+        false => Ok(()),
     }
 }
 

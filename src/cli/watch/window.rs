@@ -134,6 +134,8 @@ pub fn run(arguments: WatchArguments) -> Outcome {
         is_stale |= view.hear(&window, &pictures);
         if is_stale && changed.is_none() {
             is_stale = false;
+            // The time is told at once, however long its picture takes.
+            shown.entitle(&mut window, &view, &pictures);
             match draw(&mut pictures, &view, &mut window, &shown) {
                 Ok(picture) => shown.take(&picture),
                 Err(Error::Interrupted) => {} // by a change, or the end
