@@ -3,18 +3,19 @@
 use glam::DVec3;
 
 use super::{Source, Tracer};
-use crate::scene::{Ray, Scene, ViewPlane};
+use crate::scene::{Profile, Scene, ViewPlane};
 
-/// Within so many pixels from a core a pixel is a mean; farther off where some light ends at a reach, towards which it
-/// curves all the way.
+/// Within so many pixels from a core a pixel is a mean; farther off where some light ends, towards which it curves all
+/// the way.
 const NEAR: f64 = 8.0;
-const NEAR_REACH: f64 = 24.0;
+const NEAR_END: f64 = 97.0;
 
-/// A square is cut as long as a core is nearer than so many of its sides.
+/// A square is cut as long as a core, or the end of its light, is nearer than so many of its sides.
 const CLEAR: f64 = 1.5;
 
-/// Cuts at most.
+/// Cuts at most; light begins so gently that fewer do at its end.
 const MOST_CUTS: u32 = 7;
+const MOST_CUTS_AT_END: u32 = 3;
 
 /// So thick a core is at least, in pixels: the mean of 1/q^2 over a bare one is infinite.
 const LEAST_THICKNESS: f64 = 1.0 / 64.0;
@@ -47,7 +48,7 @@ impl Tracer {
             thickness: 0.0,
         };
         if self.integration.has_footprints() {
-            view.thickness = LEAST_THICKNESS * view.clearance(view.center()).1;
+            view.thickness = LEAST_THICKNESS * view.clearance(view.center()).pixel;
         }
         view
     }
@@ -64,13 +65,15 @@ impl PixelView<'_> {
     }
 
     pub(super) fn is_mean(&self) -> bool {
-        let has_reach = |source: &Source| source.falloff.reach.is_some();
-        let near = match self.tracer.sources.iter().any(has_reach) {
-            true => NEAR_REACH,
+        let ends = |source: &Source| {
+            source.falloff.reach.is_some() || source.falloff.profile == Profile::Gaussian
+        };
+        let near = match self.tracer.sources.iter().any(ends) {
+            true => NEAR_END,
             false => NEAR,
         };
         let has_footprints = self.tracer.integration.has_footprints();
-        has_footprints && self.clearance(self.center()).0 < near
+        has_footprints && self.clearance(self.center()).core < near
     }
 
     /// Returns column and row.
@@ -80,8 +83,10 @@ impl PixelView<'_> {
     }
 
     fn mean_over(&self, (column, row): (f64, f64), side: f64, cuts: u32) -> DVec3 {
-        let is_clear = self.clearance((column, row)).0 > CLEAR * side;
-        let is_whole = is_clear || cuts == MOST_CUTS;
+        let clearance = self.clearance((column, row));
+        let is_clear = clearance.core > CLEAR * side;
+        let is_even = clearance.end > CLEAR * side || cuts >= MOST_CUTS_AT_END;
+        let is_whole = is_clear && is_even || cuts == MOST_CUTS;
         let step = side * if is_whole { 0.5 * GAUSS } else { 0.25 };
         let parts = [(-step, -step), (step, -step), (-step, step), (step, step)];
         let parts = parts.map(|(right, below)| (column + right, row + below));
@@ -108,13 +113,16 @@ impl PixelView<'_> {
         self.tracer.radiance_of(&integrand, &ray, end, number)
     }
 
-    /// Returns how many pixels the ray through a place passes the nearest core, whose thickness
-    /// keeps it away; and the side of a pixel there, world units.
-    fn clearance(&self, (column, row): (f64, f64)) -> (f64, f64) {
+    /// Returns how far the ray through a place passes cores and the ends of their light.
+    fn clearance(&self, (column, row): (f64, f64)) -> Clearance {
         let ray = self.plane.ray_at(column, row);
         let to_plane = ray.origin.distance(self.plane.eye);
         let pixel = self.plane.column_step.length();
-        let mut least = (f64::INFINITY, 0.0);
+        let mut least = Clearance {
+            core: f64::INFINITY,
+            end: f64::INFINITY,
+            pixel: 0.0,
+        };
         let mut places = Vec::new();
         for source in &self.tracer.sources {
             places.clear();
@@ -125,20 +133,26 @@ impl PixelView<'_> {
                     true => 1.0,
                     false => (to_plane + s * self.plane.ray_length) / to_plane,
                 };
-                let pixel_there = pixel * growth;
-                let pixels = self.to_core(source, &ray, s) / pixel_there;
-                if pixels < least.0 {
-                    least = (pixels, pixel_there);
+                let pixel = pixel * growth;
+                let distance = source.field.sample(ray.at(s)).distance2.sqrt();
+                if let Some(reach) = source.falloff.reach {
+                    least.end = least.end.min((distance - reach).abs() / pixel);
+                }
+                let softening = self.tracer.integrand.softening.max(self.thickness);
+                let core = distance.hypot(source.falloff.radius.hypot(softening)) / pixel;
+                if core < least.core {
+                    (least.core, least.pixel) = (core, pixel);
                 }
             }
         }
         least
     }
+}
 
-    /// Returns how far a point of a ray is from a core, world units.
-    fn to_core(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
-        let distance = source.field.sample(ray.at(s)).distance2.sqrt();
-        let softening = self.tracer.integrand.softening.max(self.thickness);
-        distance.hypot(source.falloff.radius.hypot(softening))
-    }
+/// How many pixels a ray passes the nearest core, whose thickness keeps it away, and the nearest end of light; and the
+/// side of a pixel at that core, world units.
+struct Clearance {
+    core: f64,
+    end: f64,
+    pixel: f64,
 }

@@ -9,7 +9,7 @@ const FILES: &[SourceFile<'static>] = embed!(
     "wave/footprint/closest.h",
     "wave/footprint/footprint.h",
     "wave/footprint/mean.h",
-    "wave/footprint/reach.h",
+    "wave/footprint/across.h",
     "wave/footprint/seen.h",
     "wave/quadrature/adaptive.h",
     "wave/quadrature/closed_form.h",

@@ -1,73 +1,11 @@
-// How much light a straight core, or a point, throws on a pixel's square: the mean of what a ray gets that passes it at
-// a distance. Lengths are pixels. Without reach and decay, across a core of thickness b, 1/q gives -2 ln R and what its
-// surroundings add, 1/q^2 pi / R, 1/q^3 2 / R^2, a Gaussian a Gaussian, R^2 = distance^2 + b^2; here without factors.
+// The mean of the light of a straight core, or of a point, over a pixel's square. Lengths are pixels.
 //
 // The mean over a square of a function of the distance to a line is the mean over two intervals one after the other, of
 // the lengths of the square's sides across the line: a difference of differences of the function's second integral.
-// That of a function of the distance to a point is a sum over the square's sides.
+// That of a function of the distance to a point is a sum over the square's sides. What is smooth is taken at three
+// places (Gauss, Legendre).
 #pragma once
-#include "../../elementary.h"
-#include "../../roots.h"
-#include "../source/profile.h"
-
-#define PI 3.14159265f
-
-floatv natural_logarithm(const floatv x) {
-    return LN_2 * binary_logarithm(x);
-}
-
-// Returns atan(x / y) for x, y > 0.
-floatv arctangent_of(const floatv x, const floatv y) {
-    const floatv ratio = min(x, y) * inverse(max(x, y));
-    const floatv angle = ratio * arctangent_ratio(ratio * ratio);
-    return select(angle, 0.5f * PI - angle, x > y);
-}
-
-// Profiles as types.h numbers them: those that fall off with the logarithm, those of a distance without softening.
-#define IS_INVERSE(profile) ((profile) == 0u || (profile) == 4u)
-#define IS_BARE(profile) ((profile) == 3u || (profile) == 4u)
-#define CONVOLVED 5u
-
-// How light falls off across a core.
-typedef struct {
-    uint profile;     // as types.h says
-    floatv thickness; // b; of a Gaussian its standard deviation
-    bool has_end;     // of 1/q^2 and 1/q^3: whether it ends at a reach
-    floatv per_reach2;
-} Across;
-
-// So thick a core is at least, in pixels: the mean of 1/q^2 and 1/q^3 over a bare one is infinite.
-#define LEAST_THICKNESS 0.015625f
-
-// Smeared light looks as that of 1/q with so many standard deviations as its thickness: exp(-gamma / 2) sqrt(2).
-#define SMEARED_THICKNESS 1.0597f
-
-#ifdef SHAPES
-#define IS_GAUSSIAN(across) ((across)->profile == 3u)
-floatv gaussian_of(const floatv distance, const floatv deviation) {
-    const floatv ratio = distance * inverse(deviation);
-    return fading(0.5f * ratio * ratio);
-}
-#else
-#define IS_GAUSSIAN(across) 0
-#endif
-
-// Returns the light at a distance.
-INLINE floatv light_across(const Across *const across, const floatv distance) {
-    const floatv b = across->thickness, r2 = fma(distance, distance, b * b);
-#ifdef SHAPES
-    if (IS_GAUSSIAN(across))
-        return gaussian_of(distance, b);
-#endif
-    switch (across->profile) {
-    case 1:
-        return 0.5f * twice_inverse_sqrt_(r2);
-    case 2:
-        return inverse(r2);
-    default:
-        return -0.5f * natural_logarithm(r2);
-    }
-}
+#include "across.h"
 
 // Returns the second integral of the light over a distance from 0 on, of either sign.
 INLINE floatv second_integral_across(const Across *const across, const floatv distance) {
@@ -76,7 +14,7 @@ INLINE floatv second_integral_across(const Across *const across, const floatv di
 #ifdef SHAPES
     if (IS_GAUSSIAN(across)) {
         const floatv u = x * inverse(b) * 0.707106781f;
-        return fma(x * x * 0.707106781f * 1.25331414f, error_function_ratio(u), b * b * gaussian_of(x, b));
+        return fma(x * x * 0.707106781f * 1.25331414f, error_function_ratio(u), b * b * gaussian_of(x * x, b));
     }
 #endif
     switch (across->profile) {
@@ -110,7 +48,7 @@ INLINE floatv moment_across(const Across *const across, const floatv distance) {
     const floatv b = across->thickness, b2 = b * b, r2 = fma(distance, distance, b2);
 #ifdef SHAPES
     if (IS_GAUSSIAN(across))
-        return b2 * (1.0f - gaussian_of(distance, b));
+        return b2 * (1.0f - gaussian_of(distance * distance, b));
 #endif
     switch (across->profile) {
     case 1:
@@ -154,3 +92,94 @@ INLINE floatv mean_beside_point(const Across *const across, const floatv right, 
            moment_to_side(across, from_top, -from_left, from_right) +
            moment_to_side(across, from_bottom, -from_left, from_right);
 }
+
+// Three places across a pixel, and what they count: the middle and two beside it.
+#define PLACE_ASIDE 0.387298335f
+#define SHARE_OF_MIDDLE (8.0f / 18.0f)
+#define SHARE_ASIDE (5.0f / 18.0f)
+
+// From so far on light is smooth.
+#define SMOOTH_FROM 2.0f
+
+typedef struct {
+    floatv core, lost; // without a reach, and what that takes
+} MeanLight;
+
+// Adds light that counts so much.
+INLINE MeanLight add_share(MeanLight sum, const MeanLight light, const float share) {
+    sum.core = fma(splat(share), light.core, sum.core);
+    sum.lost = fma(splat(share), light.lost, sum.lost);
+    return sum;
+}
+
+INLINE MeanLight select_mean(MeanLight a, const MeanLight b, const intv is_b) {
+    a.core = select(a.core, b.core, is_b);
+    a.lost = select(a.lost, b.lost, is_b);
+    return a;
+}
+
+// Returns by how much of the second two means differ.
+INLINE floatv difference_of(const MeanLight a, const MeanLight b) {
+    const floatv light = b.core - b.lost;
+    return fabs(a.core - a.lost - light) * inverse(max(fabs(light), 1e-30f));
+}
+
+// Adds the light at a place beside the core, which counts so much.
+INLINE MeanLight add_place(const MeanLight mean, const Across *const across, const floatv distance2,
+                           const float share) {
+    const MeanLight light = {core_across(across, distance2), lost_across(across, distance2)};
+    return add_share(mean, light, share);
+}
+
+// Returns where the light of a core, or of its end, needs a closed form.
+INLINE intv is_rough_across(const Across *const across, const floatv distance2) {
+#ifdef SHAPES
+    if (IS_GAUSSIAN(across))
+        return across->thickness < 0.5f * SMOOTH_FROM;
+#endif
+    const intv is_rough = fma(across->thickness, across->thickness, distance2) < SMOOTH_FROM * SMOOTH_FROM;
+    return across->has_end ? is_rough & (distance2 * across->per_reach2 < 0.25f) : is_rough;
+}
+
+// Returns the mean over a pixel of the light of a line at an offset from its centre across, which ends so far along;
+// the offset grows by so much with every pixel to the right and below.
+INLINE MeanLight mean_across(const Across *const across, const floatv offset, const floatv along, const floatv right,
+                             const floatv below) {
+    const floatv along2 = along * along, distance2 = fma(offset, offset, along2);
+    const floatv before = offset - PLACE_ASIDE, after = offset + PLACE_ASIDE;
+    MeanLight mean = {splat(0.0f), splat(0.0f)};
+    mean = add_place(mean, across, distance2, SHARE_OF_MIDDLE);
+    mean = add_place(mean, across, fma(before, before, along2), SHARE_ASIDE);
+    mean = add_place(mean, across, fma(after, after, along2), SHARE_ASIDE);
+    const intv is_rough = is_rough_across(across, distance2);
+    if (any_lane(is_rough)) {
+        Across thick = *across; // the squares of what lies along and of the thickness add; Gaussians of them multiply
+        floatv share = splat(1.0f);
+#ifdef SHAPES
+        if (IS_GAUSSIAN(across))
+            share = gaussian_of(along2, across->thickness);
+        else
+#endif
+            thick.thickness = root_of(fma(across->thickness, across->thickness, along2));
+        mean.core = select(mean.core, share * mean_beside_line(&thick, fabs(offset), right, below), is_rough);
+    }
+    return mean;
+}
+
+#ifdef SHAPES
+// Returns the second integral of x^(5/2) from 0 on; 0 where x < 0.
+INLINE floatv second_integral_of_rim(const floatv x) {
+    const floatv lit = max(x, 0.0f), lit2 = lit * lit;
+    return (4.0f / 63.0f) * lit2 * lit2 * root_of(lit);
+}
+
+// Returns the mean over a pixel at the rim of the light, over what a ray gets that passes so far inside: the window
+// lets light fall off as the power 5/2 of that.
+INLINE floatv mean_at_rim(const floatv inside, const floatv right, const floatv below, const floatv of_ray) {
+    const floatv u = max(fabs(right), LEAST_SIDE), v = max(fabs(below), LEAST_SIDE);
+    const floatv outer = 0.5f * (u + v), inner = 0.5f * (u - v);
+    const floatv sum = (second_integral_of_rim(inside + outer) - second_integral_of_rim(inside + inner)) -
+                       (second_integral_of_rim(inside - inner) - second_integral_of_rim(inside - outer));
+    return sum * inverse(u * v * of_ray * of_ray * root_of(of_ray));
+}
+#endif

@@ -1,15 +1,62 @@
 #pragma each_kind
 // The mean of the light of a KIND over the pixels of rays.
 
+// Returns the light of a square of a ray's pixel. What the core is like there, its closest point tells that the
+// square's centre sees, and those that two places along the core see: where it bends or ends, they differ.
+INLINE SquareLight KIND_through(const View *const view, const Ray *const ray, const Square *const square,
+                                const Sources *const sources, const uint index, const Quadrature *const quadrature) {
+    Surroundings around;
+    MeanLight middle, mean = {splat(0.0f), splat(0.0f)};
+    floatv core_light = splat(0.0f), along_right = splat(0.0f), along_below = splat(0.0f);
+    uint places = 1;
+    for (uint k = 0; k < places; ++k) {
+        const float step = square->side * (k == 0 ? 0.0f : k == 1 ? -PLACE_ASIDE : PLACE_ASIDE);
+        const Ray passing = moved_ray(view, ray, fma(splat(step), along_right, splat(square->right)),
+                                      fma(splat(step), along_below, splat(square->below)));
+        const Closest closest = KIND_closest(&passing, sources, index);
+        if (k == 0) {
+            around = surroundings_of(view, square, &passing, &closest, &sources->JOIN(KIND, _list)[index].falloff);
+            if (!any_lane(around.is_near))
+                break;
+            along_right = around.core.along_right, along_below = around.core.along_below;
+            core_light = closest.light * decay_at(quadrature->decay, closest.s);
+            places = any_lane(around.is_close) ? 3 : 1;
+        }
+        const MeanLight here = mean_at_place(&around, &closest);
+        middle = k == 0 ? here : middle;
+        mean = add_share(mean, here, k == 0 ? SHARE_OF_MIDDLE : SHARE_ASIDE);
+    }
+    floatv bend = splat(0.0f);
+    Footprint footprint = center_of(square);
+    if (any_lane(around.is_near)) {
+        mean = select_mean(middle, mean, around.is_close);
+        bend = select(difference_of(mean, middle), splat(0.0f), around.core.is_point);
+        footprint = footprint_of(square, &around, mean);
+    }
+    floatv integrals[FOOTPRINT_RAYS];
+    for (uint k = 0; k < footprint.count; ++k) {
+        const Ray passing = moved_ray(view, ray, footprint.right[k], footprint.below[k]);
+        integrals[k] = KIND_integral(&passing, sources, index, quadrature);
+    }
+    return light_of_square(&footprint, integrals, core_light, bend);
+}
+
 PER_RAY floatv KIND_seen(const View *const view, const Ray *const ray, const Sources *const sources, const uint index,
                          const Quadrature *const quadrature) {
-    const Closest closest = KIND_closest(ray, sources, index);
-    const Footprint footprint = footprint_of(view, ray, &closest, &sources->JOIN(KIND, _list)[index].falloff);
-    floatv light = splat(0.0f);
-    for (uint k = 0; k < footprint.count; ++k) {
-        const Ray moved = footprint.is_center ? *ray : moved_ray(view, ray, footprint.right[k], footprint.below[k]);
-        const floatv integral = KIND_integral(&moved, sources, index, quadrature);
-        light = fma(footprint.weight[k], integral, light);
+    Square square = {0.0f, 0.0f, 1.0f};
+    SquareLight whole;
+    floatv sum = splat(0.0f);
+    uint cuts = 0; // the pixel as it is, and then so many squares a side
+    for (uint k = 0; k <= cuts * cuts; ++k) {
+        if (k > 0)
+            square = part_of_pixel(k - 1u, cuts);
+        const SquareLight seen = KIND_through(view, ray, &square, sources, index, quadrature);
+        sum = k > 0 ? sum + seen.light : sum;
+        if (k == 0) {
+            whole = seen;
+            cuts = cuts_for(whole.doubt);
+        }
     }
-    return light;
+    return cuts == 0 ? whole.light
+                     : select(whole.light, sum * (1.0f / (float)(cuts * cuts)), whole.doubt > HALVED_FROM);
 }

@@ -127,6 +127,9 @@ Closest beam_closest(const Ray *const ray, const Sources *const sources, const u
     const floatv ahead = path.has_taper ? fma(path.taper_slope, s, path.taper) : height_at(&path.height, s);
     const Closest to_line = closest_to_line(ray, fine3(beam->point, beam->point_rest), uniform3(beam->direction), s);
     const Closest to_tip = closest_to_point(ray, fine3(beam->tip, beam->tip_rest), path.to_tip.nearest);
-    return select_closest(to_tip, to_line, ahead >= 0.0f);
+    Closest closest = select_closest(to_tip, to_line, ahead >= 0.0f);
+    closest.along = to_line.along;
+    closest.light = splat(path.has_taper || path.sphere != 0.0f ? 0.0f : path.line);
+    return closest;
 }
 #endif

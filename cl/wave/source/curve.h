@@ -79,10 +79,9 @@ Closest curve_closest(const Ray *const ray, const Sources *const sources, const 
     const curve_offset offset = offset_from_curve(path, &point, x);
     const float3v along = uniform3(curve->along), across = uniform3(curve->across), normal = uniform3(curve->normal);
     const float3v in_plane = fma3(across, offset.across, scale3(along, offset.along));
-    const intv is_end = fabs(x) >= 0.5f;
     const float3v tangent = fma3(across, curve_velocity_across(path, x), scale3(along, splat(path->velocity_along)));
-    const Closest closest = {s, scale3(fma3(normal, point.normal, in_plane), splat(-0.5f)),
-                             select3(tangent, uniform3((float4)(0.0f)), is_end), splat(0.0f)};
+    const Closest closest = {s, scale3(fma3(normal, point.normal, in_plane), splat(-0.5f)), tangent, splat(0.0f),
+                             SERIES_LENGTH(path) ? curve_intensity(path, x) : splat(1.0f)};
     return closest;
 }
 #endif

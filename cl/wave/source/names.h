@@ -48,4 +48,5 @@
 #define KIND_two_panels JOIN(KIND, _two_panels)
 #define KIND_at_end JOIN(KIND, _at_end) // ../tiles/settle.h
 #define KIND_settle JOIN(KIND, _settle)
-#define KIND_seen JOIN(KIND, _seen) // ../footprint/seen.h
+#define KIND_through JOIN(KIND, _through) // ../footprint/seen.h
+#define KIND_seen JOIN(KIND, _seen)

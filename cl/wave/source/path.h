@@ -223,10 +223,12 @@ Closest path_closest(const Ray *const ray, const Sources *const sources, const u
     const intv last = (intv)((int)rows->corner_count - 1);
     const intv is_end = (place.corner == 0) | (place.corner == last);
     const float3v level = select3(cross3(from_core, ray->span), uniform3((float4)(0.0f)), is_end);
-    Closest closest = {s, scale3(from_core, splat(-1.0f)), select3(level, direction, place.is_line), splat(0.0f)};
+    Closest closest = {s, scale3(from_core, splat(-1.0f)), select3(level, direction, place.is_line), splat(0.0f),
+                       splat(1.0f)};
 #ifdef SERIES
     const path_light light = path_light_at(rows, path.source->is_even, &place, spot.at);
     closest.thickness2 = 0.25f * light.radius * light.radius;
+    closest.light = light.value;
 #endif
     return closest;
 }

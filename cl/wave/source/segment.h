@@ -172,6 +172,8 @@ Closest segment_closest(const Ray *const ray, const Sources *const sources, cons
         closest_to_line(ray, fine3(segment->point, segment->point_rest), uniform3(segment->direction), s);
     const Closest to_first = closest_to_point(ray, fine3(segment->from, segment->from_rest), path.to_first.nearest);
     const Closest to_last = closest_to_point(ray, fine3(segment->to, segment->to_rest), path.to_last.nearest);
-    return select_closest(select_closest(to_line, to_first, is_before), to_last, is_beyond);
+    Closest closest = select_closest(select_closest(to_line, to_first, is_before), to_last, is_beyond);
+    closest.along = to_line.along;
+    return closest;
 }
 #endif

@@ -2,6 +2,7 @@
 // against a cone around the rays through some pixels, from the eye; of parallel rays against a cylinder.
 #pragma once
 #include "../../view.h"
+#include "clearance.h"
 #include "tile.h"
 
 // Some pixels' cone: its axis goes through the middle of the pixels, and holds a ball of a radius around that point.
@@ -23,7 +24,7 @@ typedef struct {
 
 // Returns the radius that so many columns and rows of pixels need, whose sides may be askew.
 float radius_of_pixels(const View *const view, const uint columns, const uint rows) {
-    const float across = 0.5f * (float)(columns - 1u), down = 0.5f * (float)(rows - 1u);
+    const float across = 0.5f * (float)(columns - 1u) + SEEN_BEYOND, down = 0.5f * (float)(rows - 1u) + SEEN_BEYOND;
     const float right2 = dot(view->column_step, view->column_step), below2 = dot(view->row_step, view->row_step);
     const float askew = fabs(dot(view->column_step, view->row_step));
     return CONE_MARGIN * sqrt(across * across * right2 + down * down * below2 + 2.0f * across * down * askew);

@@ -8,6 +8,12 @@
 
 #define PLACES_SEEN 3
 
+#ifdef FOOTPRINT
+#define SEEN_BEYOND 0.75f
+#else
+#define SEEN_BEYOND 0.0f
+#endif
+
 typedef struct {
     floatv distance2;         // between ray and core, squared, in pixels as large as they are there
     floatv to_light;          // between ray and light, in such pixels; less than 0 where the ray is lit
@@ -25,7 +31,7 @@ INLINE Clearance clear_by(const Ray *const ray, const float pixel_step, const fl
 #ifdef SHAPES
     const floatv bare = 0.5f * twice_sqrt(max(distance2 - profile->softening2, 1e-30f));
     if (HAS_END(profile))
-        clearance.to_light = 0.5f * (bare - sqrt(profile->end2)) * per_side;
+        clearance.to_light = fma(0.5f * (bare - sqrt(profile->end2)), per_side, splat(-SEEN_BEYOND));
 #endif
     return clearance;
 }
