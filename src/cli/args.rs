@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -11,6 +12,7 @@ use energywave::{Error, RendererOptions, SlowStart};
 use super::examples;
 use super::subcommands::*;
 use super::warn;
+use super::watch::WatchArguments;
 
 /// Volumetric energy effects, integrated along every view ray on any OpenCL device.
 #[derive(Debug, Parser)]
@@ -28,6 +30,9 @@ pub enum Command {
     /// Draw a scene
     #[command(after_help = examples::RENDER)]
     Render(RenderArguments),
+    /// Draw a scene again whenever it is saved: to a file, or in a window
+    #[command(after_help = examples::WATCH)]
+    Watch(WatchArguments),
     /// Write a scene to begin with: a preset, with comments that say what to change
     #[command(after_help = examples::NEW)]
     New(NewArguments),
@@ -82,6 +87,9 @@ pub struct RenderArguments {
     /// When it is in a scene that moves, seconds [default: 0]
     #[arg(long, value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
     pub time: Option<f64>,
+    /// Frames a second, of which [time] shutter is a share: blurs motion from --time on [default: the moment alone]
+    #[arg(long, value_name = "RATE", value_parser = rate, allow_hyphen_values = true)]
+    pub fps: Option<f64>,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
@@ -164,6 +172,9 @@ pub struct Overrides {
         requires = "depth"
     )]
     pub depth_none: Option<f64>,
+    /// The image of --depth, once it was read, unless it depends on a camera that may move.
+    #[arg(skip)]
+    pub opened_depth: OnceCell<DepthImage>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -255,7 +266,10 @@ impl Overrides {
         }
         scene.image = self.size.unwrap_or(scene.image);
         if let Some(file) = &self.depth {
-            scene.depth = Some(self.open_depth(file, scene)?);
+            scene.depth = Some(match self.opened_depth.get() {
+                Some(depth) => depth.clone(),
+                None => self.open_depth(file, scene)?,
+            });
         }
         scene.integration.method = self.method(scene.integration.method, keys)?;
         if let Some(name) = self.antialias {
@@ -319,6 +333,7 @@ impl Overrides {
         if let (false, Some(matrices)) = (options.along.is_length(), &scene.camera.matrices) {
             options.clip = Some(matrices.clip_depth()?);
         }
+        let is_length = options.along.is_length();
         let depth = DepthImage::open(file, options)?;
         let size = depth.size();
         if size != image {
@@ -329,6 +344,9 @@ impl Overrides {
                     size.width, size.height, image.width, image.height
                 ),
             ));
+        }
+        if is_length {
+            let _ = self.opened_depth.set(depth.clone()); // it was empty
         }
         Ok(depth)
     }
@@ -374,10 +392,19 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-fn time(text: &str) -> Result<f64, String> {
+pub(super) fn time(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(time) if f64::abs(time) <= 1e9 => Ok(time),
         _ => Err("a time is a number of seconds, such as 1.5".to_owned()),
+    }
+}
+
+pub(super) fn rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if (1e-6..=1e6).contains(&rate) => Ok(rate),
+        _ => {
+            Err("a rate is a positive number of frames a second, such as 24, up to 1e6".to_owned())
+        }
     }
 }
 

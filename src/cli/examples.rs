@@ -14,7 +14,17 @@ Examples:
   energywave render laser.toml -o laser.png
   energywave render laser.toml -o laser.exr --size 320x180 --tolerance 1e-4
   energywave render laser.toml -o laser.png --device reference --quiet
+  energywave render laser.toml -o laser.png --time 1.5 --fps 24
   energywave new nova -o - | energywave render - -o nova.png --size 320x180";
+
+pub const WATCH: &str = "\
+Examples:
+  energywave watch laser.toml -o laser.png
+  energywave watch laser.toml -o laser.png --size 320x180 --time 1.5
+
+Without -o, in a window, of a program that was built with it (cargo install --features window): space stops and goes \
+on, arrow keys go from frame to frame, dragging turns the camera, with the right button it goes through the time, the \
+wheel comes closer, Home goes back, Esc ends. A red frame means that the scene has a fault; the title says which.";
 
 pub const NEW: &str = "\
 Examples:

@@ -16,6 +16,7 @@ mod render;
 mod scene_help;
 mod subcommands;
 mod verify;
+mod watch;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -26,7 +27,7 @@ use anstyle::AnsiColor;
 use clap::Parser;
 use energywave::scene::keys::json_schema;
 use energywave::scene::{AnimatedScene, Method, MethodKeys, Scene};
-use energywave::{Device, DeviceType, Devices, Error, ErrorKind, shown, shown_lines};
+use energywave::{Device, DeviceType, Devices, Error, ErrorKind, SceneError, shown, shown_lines};
 
 use args::{Arguments, Command};
 
@@ -60,6 +61,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
     warnings.iter().for_each(|warning| warn(warning));
     let outcome = match arguments.command {
         Command::Render(arguments) => render::run(arguments),
+        Command::Watch(arguments) => watch::run(arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
@@ -190,24 +192,23 @@ fn read_scene(
     path: &Path,
     adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<(), Error>,
 ) -> Result<Scene, Error> {
-    read_frame(path, 0.0, adjust)
+    let (scene, warnings) = open_scene(path)?.into_frame(0.0, adjust)?;
+    warn_all(&warnings);
+    Ok(scene)
 }
 
-/// Reads a scene as it is at a time, seconds.
-fn read_frame(
-    path: &Path,
-    time: f64,
-    adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<(), Error>,
-) -> Result<Scene, Error> {
-    let scene = match path == Path::new("-") {
+/// Opens a scene that may move.
+fn open_scene(path: &Path) -> Result<AnimatedScene, Error> {
+    match path == Path::new("-") {
         true => AnimatedScene::from_reader(io::stdin().lock(), "standard input"),
         false => AnimatedScene::from_file(path),
-    }?;
-    let (scene, warnings) = scene.into_frame(time, adjust)?;
+    }
+}
+
+fn warn_all(warnings: &[SceneError]) {
     for warning in warnings {
         warn(&warning.to_string());
     }
-    Ok(scene)
 }
 
 /// Says on standard error what the scene's depths come to, and what is likely wrong with them.

@@ -1,15 +1,17 @@
 //! `energywave render`: a scene file to an image file.
 
 use std::io::{IsTerminal, stdout};
+use std::ops::Range;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use energywave::image::{Display, Exposure, ImageFile, ImageFormat};
+use energywave::scene::{AnimatedScene, MethodKeys};
 use energywave::{Device, Error, RadianceImage, Renderer, Scene, shown};
 
 use super::args::{FormatName, RenderArguments};
 use super::progress::{Progress, catch_interrupts, was_interrupted};
-use super::{Outcome, choose_devices, method_name, names, note, read_frame, tell_depths};
+use super::{Outcome, choose_devices, method_name, names, note, open_scene, tell_depths, warn_all};
 
 pub fn run(arguments: RenderArguments) -> Outcome {
     let format = format(&arguments)?;
@@ -19,17 +21,14 @@ pub fn run(arguments: RenderArguments) -> Outcome {
         return Err(Error::Unsupported(message.to_owned()).into());
     }
     let overrides = &arguments.overrides;
-    let mut scene = read_frame(
-        &arguments.scene,
-        arguments.time.unwrap_or(0.0),
-        |scene, keys| {
-            overrides.apply(scene, keys)?;
-            let display = &mut scene.display;
-            display.bits = arguments.bits.or(display.bits);
-            display.exposure = arguments.exposure.unwrap_or(display.exposure);
-            format.check(display)
-        },
-    )?;
+    let adjust = |scene: &mut Scene, keys: &MethodKeys| {
+        overrides.apply(scene, keys)?;
+        let display = &mut scene.display;
+        display.bits = arguments.bits.or(display.bits);
+        display.exposure = arguments.exposure.unwrap_or(display.exposure);
+        format.check(display)
+    };
+    let (mut scene, blur) = read(&arguments, adjust)?;
     let groups = match arguments.light_groups {
         true => light_groups(&scene)?,
         false => Vec::new(),
@@ -46,18 +45,29 @@ pub fn run(arguments: RenderArguments) -> Outcome {
     // An exposure that fits is that of the light before its bloom.
     renderer.spread_bloom(!is_auto);
     let parts = 1.0 + groups.len() as f32;
-    let mut drawn_parts = 0.0;
-    let mut draw = |scene: &Scene| {
-        let mut report = |share| progress.report((drawn_parts + share) / parts);
-        let image = renderer.render_with_progress(scene, &mut report);
+    let (mut drawn_parts, mut moments) = (0.0, 1);
+    // A part, or all, of the light, at a moment or of all of them while the shutter is open.
+    let mut draw = |scene: &Scene, part: &dyn Fn(Scene) -> Scene| {
+        let report = &mut |share| progress.report((drawn_parts + share) / parts);
+        let image = match &blur {
+            None => renderer.render_with_progress(scene, report),
+            Some(Blur { moving, times }) => {
+                let scene_at = &mut |time| Ok(part(moving.at_with(time, adjust)?));
+                renderer.render_mean_with_progress(times.clone(), scene_at, report)
+            }
+        };
         drawn_parts += 1.0;
+        moments = moments.max(renderer.last_moments());
         image
     };
-    let mut image = draw(&scene)?;
-    let mut layers = groups
-        .into_iter()
-        .map(|(name, scene)| Ok((name, draw(&scene)?)))
-        .collect::<Result<Vec<_>, Error>>()?;
+    let mut image = draw(&scene, &|scene| scene)?;
+    let layers = groups.into_iter().map(|group| {
+        let light = draw(&group.scene, &|scene| {
+            scene.of_light_group(group.light_group.as_deref())
+        })?;
+        Ok((group.layer, light))
+    });
+    let mut layers = layers.collect::<Result<Vec<_>, Error>>()?;
     drop(progress);
     if was_interrupted() {
         return Err(Error::Interrupted.into());
@@ -79,15 +89,53 @@ pub fn run(arguments: RenderArguments) -> Outcome {
         [] => output.write(&image, &scene.display)?,
         layers => output.write_light_groups(&image, layers, &scene.display)?,
     }
-    note(&drawn(&image, &scene, took, &names(&devices)));
+    note(&drawn(&image, &scene, moments, took, &names(&devices)));
     Ok(())
+}
+
+/// A scene that moves while its shutter is open.
+struct Blur {
+    moving: AnimatedScene,
+    times: Range<f64>,
+}
+
+/// Reads the scene at its time, says what was hardly meant in it, and finds out what is blurred.
+fn read(
+    arguments: &RenderArguments,
+    adjust: impl Fn(&mut Scene, &MethodKeys) -> Result<(), Error>,
+) -> Result<(Scene, Option<Blur>), Error> {
+    let moving = open_scene(&arguments.scene)?;
+    let time = arguments.time.unwrap_or(0.0);
+    let is_blurred = moving.is_animated() && moving.shutter() > 0.0;
+    let Some(rate) = arguments.fps.filter(|_| is_blurred) else {
+        let (scene, warnings) = moving.into_frame(time, adjust)?;
+        warn_all(&warnings);
+        if is_blurred {
+            note(
+                "time.shutter: a share of a frame whose length is not given (--fps); drawn as at the moment",
+            );
+        }
+        return Ok((scene, None));
+    };
+    let (scene, warnings) = moving.at_with_warnings(time, adjust)?;
+    warn_all(&warnings);
+    let times = moving.open_at(time, rate);
+    Ok((scene, Some(Blur { moving, times })))
 }
 
 /// The layer of light that belongs to no group.
 const UNGROUPED: &str = "rest";
 
-/// Returns a scene for each group of lights, and one for what belongs to none.
-fn light_groups(scene: &Scene) -> Result<Vec<(String, Scene)>, Error> {
+/// A layer of an image.
+struct LightGroup {
+    layer: String,
+    /// `None`: what belongs to none.
+    light_group: Option<String>,
+    scene: Scene,
+}
+
+/// Returns a layer for each group of lights, and one for what belongs to none.
+fn light_groups(scene: &Scene) -> Result<Vec<LightGroup>, Error> {
     let names = scene.light_groups();
     if names.is_empty() {
         let message = "--light-groups: no source or [[group]] of the scene names a light_group";
@@ -101,10 +149,12 @@ fn light_groups(scene: &Scene) -> Result<Vec<(String, Scene)>, Error> {
     }
     let rest = scene.has_ungrouped_light().then_some((UNGROUPED, None));
     let named = names.into_iter().map(|name| (name, Some(name)));
-    Ok(named
-        .chain(rest)
-        .map(|(name, group)| (name.to_owned(), scene.of_light_group(group)))
-        .collect())
+    let layer = |(layer, name): (&str, Option<&str>)| LightGroup {
+        layer: layer.to_owned(),
+        light_group: name.map(str::to_owned),
+        scene: scene.of_light_group(name),
+    };
+    Ok(named.chain(rest).map(layer).collect())
 }
 
 /// Checks the bits that were typed, which stand in no file.
@@ -120,7 +170,12 @@ fn check_bits(arguments: &RenderArguments, format: ImageFormat) -> Result<(), Er
 }
 
 /// Says in the file what it shows, and how that was made.
-fn noted(output: ImageFile, name: &Path, scene: &Scene, devices: &[Device]) -> ImageFile {
+pub(super) fn noted(
+    output: ImageFile,
+    name: &Path,
+    scene: &Scene,
+    devices: &[Device],
+) -> ImageFile {
     let name = match name == Path::new("-") {
         true => "standard input".to_owned(),
         false => shown(&name.file_name().unwrap_or_default().to_string_lossy()),
@@ -133,7 +188,17 @@ fn noted(output: ImageFile, name: &Path, scene: &Scene, devices: &[Device]) -> I
 }
 
 /// Says what was drawn.
-fn drawn(image: &RadianceImage, scene: &Scene, took: Duration, device: &str) -> String {
+pub(super) fn drawn(
+    image: &RadianceImage,
+    scene: &Scene,
+    moments: u32,
+    took: Duration,
+    device: &str,
+) -> String {
+    let mean = match moments {
+        ..=1 => String::new(),
+        _ => format!(", the mean of {moments} moments,"),
+    };
     let light = image
         .as_slice()
         .chunks_exact(4)
@@ -143,7 +208,7 @@ fn drawn(image: &RadianceImage, scene: &Scene, took: Duration, device: &str) -> 
     });
     let (least, greatest) = (digits(least.into()), digits(greatest.into()));
     format!(
-        "drawn: {}x{} pixels in {:.2} s on {device}; radiance {least} to {greatest}, exposure {} stops",
+        "drawn: {}x{} pixels{mean} in {:.2} s on {device}; radiance {least} to {greatest}, exposure {} stops",
         image.size().width,
         image.size().height,
         took.as_secs_f64(),

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use super::one::Rows;
 use super::{Renderer, whole};
-use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{Bloom, RadianceImage, kept_image};
 use crate::scene::{DepthLayers, Scene};
@@ -27,7 +26,7 @@ impl Renderer {
             return self.draw_part(scene, wanted, progress);
         };
         let (rows, part) = (wanted.rows, 1.0 / layers.count() as f32);
-        let mut before = FrameCost::default();
+        let mut before = self.cost_before;
         let mut draw = |scene: &Scene, target: &mut [f32], stride: usize, done: f32| {
             let wanted = Rows {
                 rows: rows.clone(),

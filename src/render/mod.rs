@@ -5,10 +5,12 @@ mod device;
 mod host;
 mod host_depth;
 mod layers;
+mod moments;
 mod one;
 mod referenced;
 mod several;
 mod shares;
+mod shutter;
 
 use std::ops::{ControlFlow, Deref, Range};
 use std::time::Instant;
@@ -26,6 +28,7 @@ use device::Backend;
 use one::{DeviceRenderer, Rows};
 use referenced::{draw_reference, reference_cost};
 use several::SeveralRenderer;
+use shutter::Shutter;
 
 /// An image in the renderer's own memory, linear RGBA by rows, readable until it is dropped.
 #[derive(Debug)]
@@ -63,6 +66,10 @@ pub struct Renderer {
     cost_before: FrameCost,
     /// An image that is put together of parts, and lent.
     kept: Option<RadianceImage>,
+    /// What means over time keep.
+    shutter: Shutter,
+    /// At how many moments the last frame was drawn.
+    moments: u32,
 }
 
 #[derive(Debug)]
@@ -131,6 +138,8 @@ impl Renderer {
             layers: None,
             cost_before: FrameCost::default(),
             kept: None,
+            shutter: Shutter::default(),
+            moments: 0,
         }
     }
 
@@ -335,6 +344,7 @@ impl Renderer {
     /// Checks a scene; its sources only if they changed.
     fn check(&mut self, scene: &Scene) -> Result<()> {
         self.cost_before = FrameCost::default();
+        self.moments = 1;
         scene.validate_again(&mut self.checked)
     }
 

@@ -44,7 +44,7 @@ pub(crate) struct Rows<'a> {
 type Progress<'a> = dyn FnMut(f32) -> ControlFlow<()> + 'a;
 
 /// Reads a band of pixels, numbered in the image, from the beginning of the film.
-type Read<'a> = dyn FnMut(&Film, &Compute, Range<usize>) -> Result<()> + 'a;
+type Read<'a> = dyn FnMut(&mut Film, &Compute, Range<usize>) -> Result<()> + 'a;
 
 impl DeviceRenderer {
     /// Opens a device. Kernels are built when a scene first needs them.
@@ -96,6 +96,12 @@ impl DeviceRenderer {
         self.wave.grain_rows(scene)
     }
 
+    /// Plans a frame of a valid scene.
+    pub(super) fn plan(&mut self, scene: &Scene) -> Result<Plan> {
+        self.bloom_cost = FrameCost::default();
+        self.wave.plan(&self.compute, scene, self.film.format())
+    }
+
     /// Renders some rows of a valid scene, and returns the time from the first launch on unless kernels had to be
     /// built.
     pub(crate) fn render_rows(
@@ -104,9 +110,8 @@ impl DeviceRenderer {
         wanted: Rows<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<Option<Duration>> {
-        self.bloom_cost = FrameCost::default();
         let built = self.wave.kernel_count();
-        let plan = self.wave.plan(&self.compute, scene, self.film.format())?;
+        let plan = self.plan(scene)?;
         let is_built = self.wave.kernel_count() == built;
         let begun = Instant::now();
         let Rows {
@@ -127,7 +132,7 @@ impl DeviceRenderer {
             }
         }
         let grain = self.grain_rows(scene) * scene.image.width;
-        let mut read = |film: &Film, compute: &Compute, band: Range<usize>| {
+        let mut read = |film: &mut Film, compute: &Compute, band: Range<usize>| {
             let first = (band.start - begin) / width * stride;
             let target = &mut target[first..];
             match stride == 4 * width {
@@ -149,7 +154,7 @@ impl DeviceRenderer {
     pub(crate) fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<Pixel>> {
         let plan = self.wave.plan_rays(&self.compute, scene, rays)?;
         let mut radiances = vec![[0.0; 4]; rays.len()];
-        let mut read = |film: &Film, compute: &Compute, band: Range<usize>| {
+        let mut read = |film: &mut Film, compute: &Compute, band: Range<usize>| {
             film.read(compute, &mut radiances[band])
         };
         let nothing = &mut |_: f32| ControlFlow::Continue(());
@@ -161,7 +166,7 @@ impl DeviceRenderer {
 
     /// Draws pixels in bands that fit into one buffer of the device, multiples of `grain`, and has each read; with the
     /// bloom where there is a single band. Returns whether there was.
-    fn draw_bands(
+    pub(super) fn draw_bands(
         &mut self,
         plan: &Plan,
         pixels: Range<u32>,
@@ -225,8 +230,7 @@ impl DeviceRenderer {
         scene: &Scene,
         bloom: Option<Bloom>,
     ) -> Result<MappedFilm<'_>> {
-        self.bloom_cost = FrameCost::default();
-        let plan = self.wave.plan(&self.compute, scene, self.film.format())?;
+        let plan = self.plan(scene)?;
         let Self {
             wave,
             spreader,

@@ -36,5 +36,6 @@ mod search; // draws what examples/hard_scenes has found
 mod segment; // holds segments to their definition
 mod shape_forms; // takes closed forms of shapes along every part of a ray
 mod shapes; // holds how fields fall off to their definition
+mod shutter; // blurs motion
 mod tiles; // holds interpolation by tiles to the tolerance, and counts what it costs
 mod tone_maps; // holds tone maps to their published constants

@@ -212,9 +212,25 @@ const BAD: &[(&str, &str, &str)] = &[
         "expected a number",
     ),
     (
-        "1\n[time]\nshutter = 1",
-        ":7:1: time.shutter:",
-        "unknown field `shutter`",
+        "1\n[time]\nshutter = 1.5",
+        ":7:11: time.shutter:",
+        "a share of a frame from 0, not at all, to 1, all of it; found 1.5",
+    ),
+    ("1\n[time]\nshutter = -0.1", "time.shutter:", "found -0.1"),
+    (
+        "1\n[time]\nshutter = nan",
+        "time.shutter:",
+        "not a finite number",
+    ),
+    (
+        "1\n[time]\nshutter = \"half\"",
+        ":7:11: time.shutter:",
+        "expected a number",
+    ),
+    (
+        "1\n[time]\nshutters = 0.5",
+        ":7:1: time.shutters:",
+        "did you mean `shutter`?",
     ),
 ];
 

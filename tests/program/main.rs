@@ -37,3 +37,5 @@ mod speaks; // says what it drew, and is quiet
 mod tracks; // draws scenes at times
 mod verify; // checks known rays, past sources and past whole scenes
 mod warnings; // is told what a scene was hardly meant to say
+#[cfg(unix)] // as cli
+mod watch; // draws scenes again that are saved

@@ -153,3 +153,87 @@ fn tracks_are_set_into_a_scene_made_in_code() {
     let still = AnimatedScene::new(scene.clone(), std::iter::empty::<(&str, Track)>()).unwrap();
     assert_eq!(still.at(3.0).unwrap(), scene);
 }
+
+#[test]
+fn the_program_blurs_while_the_shutter_is_open() {
+    let folder = Folder::new();
+    let text = format!(
+        "{MOVING}[time]\nshutter = 0.25\n[integration]\nantialias = \"none\"\ntolerance = 0.01\n"
+    );
+    std::fs::write(folder.path().join("a.toml"), &text).unwrap();
+    let draw = |arguments: &[&str], words: &str| {
+        let output = folder.run(
+            &[
+                &["render", "a.toml", "-o", "out.exr", "--device", "reference"],
+                arguments,
+            ]
+            .concat(),
+        );
+        expect(&output, 0, words);
+        energywave::RadianceImage::open(folder.path().join("out.exr")).unwrap()
+    };
+    let moving = AnimatedScene::from_toml(text).unwrap();
+    let mut renderer = Renderer::new(&Device::reference()).unwrap();
+    assert_eq!(moving.open_at(1.0, 2.0), 1.0..1.125);
+    let blurred = renderer.render_shutter(&moving, 1.0..1.125).unwrap();
+    let words = format!(", the mean of {} moments,", renderer.last_moments());
+    assert_eq!(draw(&["--time", "1", "--fps", "2"], &words), blurred);
+    let moment = draw(&["--time", "1"], "time.shutter: a share of a frame");
+    assert_eq!(moment.as_slice(), drawn(&moving.at(1.0).unwrap()));
+    assert_ne!(moment, blurred);
+    let wide = draw(&["--time", "1", "--fps", "2", "--size", "8x5"], &words);
+    assert_eq!((wide.size().width, wide.size().height), (8, 5));
+    for rate in ["0", "-1", "nan", "inf", "fast"] {
+        let wrong = folder.run(&["render", "a.toml", "-o", "x.exr", "--fps", rate]);
+        expect(&wrong, 2, "a positive number of frames a second");
+    }
+    assert_eq!(folder.names().len(), 2);
+}
+
+#[test]
+fn groups_of_lights_are_blurred_each_and_files_are_read_once() {
+    let folder = Folder::new();
+    let text = format!(
+        "{MOVING}light_group = \"far\"\n[time]\nshutter = 1\n[integration]\ntolerance = 0.01\n\
+         antialias = \"none\"\n[depth]\nfile = \"near.f32\"\n"
+    );
+    let name = |file: &str| folder.path().join(file);
+    std::fs::write(name("a.toml"), text).unwrap();
+    let depths: Vec<u8> = (0..24)
+        .flat_map(|k: i32| (3.0 + k as f32 / 8.0).to_le_bytes())
+        .collect();
+    std::fs::write(name("near.f32"), depths).unwrap();
+    let arguments = ["render", "a.toml", "--device", "reference", "--fps", "4"];
+    let output = folder.run(&[&arguments[..], &["-o", "out.exr", "--light-groups"]].concat());
+    expect(&output, 0, "the mean of");
+    let all = energywave::RadianceImage::open(name("out.exr")).unwrap();
+    let part = |layer| energywave::RadianceImage::open_layer(name("out.exr"), layer).unwrap();
+    let (far, rest) = (part("far"), part("rest"));
+    for ((all, far), rest) in all
+        .as_slice()
+        .iter()
+        .zip(far.as_slice())
+        .zip(rest.as_slice())
+    {
+        let sum = far + rest;
+        assert!(
+            (all - sum).abs() <= 0.02 * all || *all == 1.0,
+            "{all}, {sum}"
+        );
+    }
+    // Depths stay where they were read, though the camera moves.
+    let moving = AnimatedScene::from_file(name("a.toml")).unwrap();
+    let begin = moving.at(0.0).unwrap();
+    std::fs::remove_file(name("near.f32")).unwrap();
+    assert_eq!(moving.at(1.0).unwrap().depth, begin.depth);
+    let larger = moving.at_with(1.0, |scene, _| {
+        scene.image.width = 7;
+        Ok(())
+    });
+    assert!(larger.unwrap_err().to_string().contains("depth.file"));
+    let given = moving.at_with(1.0, |scene, _| {
+        scene.depth = Some(begin.depth.clone().unwrap());
+        Ok(())
+    });
+    assert_eq!(given.unwrap(), moving.at(1.0).unwrap());
+}

@@ -1,139 +1,17 @@
 //! Scenes of which something is a function of time.
 
 use std::borrow::Cow;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use super::document::{Document, Motion};
+use super::groups::Groups;
 use super::moving::Moving;
-use super::pieces::source_key;
-use super::scan::UNITS;
-use super::tracks::read;
 use super::tree::{Moment, Node};
 use super::words::Language;
 use super::*;
 use crate::image::{Background, DepthImage};
-use crate::scene::track::wrapped;
-
-/// A scene file that was read: as it is at 0 s, and what of it changes.
-#[derive(Debug, Clone)]
-pub(super) struct Document<'a> {
-    file: SceneFile,
-    motion: Motion<'a>,
-}
-
-/// What takes a file to another time.
-#[derive(Debug, Clone)]
-struct Motion<'a> {
-    moving: Moving,
-    language: Language,
-    /// The text of the file; of a scene that was made in code, none.
-    text: Cow<'a, str>,
-    /// What errors call it.
-    name: Option<PathBuf>,
-    /// Where files are that it names.
-    folder: PathBuf,
-}
-
-impl<'a> Document<'a> {
-    /// Reads a text, whose errors are called by `name`.
-    pub(super) fn read(
-        is_json: bool,
-        text: impl Into<Cow<'a, str>>,
-        name: Option<&Path>,
-        folder: &Path,
-    ) -> Result<Self> {
-        let text = text.into();
-        let (language, read) = match is_json {
-            true => (json::LANGUAGE, json::read(&text)),
-            false => (Language::Toml, toml::read(&text)),
-        };
-        let (file, moving) = read.map_err(|error| match name {
-            Some(name) => name_file(error, name),
-            None => error,
-        })?;
-        let motion = Motion {
-            moving,
-            language,
-            text,
-            name: name.map(Path::to_owned),
-            folder: folder.to_owned(),
-        };
-        Ok(Self { file, motion })
-    }
-
-    /// Makes the scene at a time, and its warnings.
-    pub(super) fn into_frame(self, time: f64, adjust: Adjust<'_>) -> Result<Read> {
-        let (motion, file) = (self.motion, self.file);
-        let ((scene, warnings), moment) =
-            motion.frame(file, time, |file| file.into_scene(&motion.folder, adjust))?;
-        let placed = |warning| motion.placed(warning, moment);
-        Ok((scene, warnings.into_iter().map(placed).collect()))
-    }
-}
-
-impl Motion<'_> {
-    /// Makes of a file as it is at 0 s what `make` makes of the file at a time.
-    fn frame<T>(
-        &self,
-        mut file: SceneFile,
-        time: f64,
-        make: impl FnOnce(SceneFile) -> Result<T>,
-    ) -> Result<(T, Moment)> {
-        if !time.is_finite() {
-            let message = format!("{time} is no time; it is a finite number of seconds");
-            return Err(SceneError::value("", message).into());
-        }
-        let period = file.period();
-        let moment = Moment {
-            time: period.map_or(time, |period| wrapped(time, period)),
-            period,
-        };
-        self.go_to(&mut file, moment)?;
-        match make(file) {
-            Ok(made) => Ok((made, moment)),
-            Err(Error::Scene(fault)) => Err(self.placed(fault, moment).into()),
-            Err(other) => Err(other),
-        }
-    }
-
-    /// Reads again what changes.
-    fn go_to(&self, file: &mut SceneFile, moment: Moment) -> Result<()> {
-        let moving = &self.moving;
-        if moving.is_empty() || moment.time == 0.0 {
-            return Ok(());
-        }
-        let fault = |(key, message): (String, String)| {
-            let key = match source_key(&key) {
-                Some((unit, index, rest)) => {
-                    let whole = moving.indices[unit].get(index).copied().unwrap_or(index);
-                    format!("{}[{whole}]{rest}", UNITS[unit])
-                }
-                None => key,
-            };
-            self.placed(SceneError::value(key, message), moment)
-        };
-        if let Some(singles) = &moving.singles {
-            file.replace_singles(read(singles, moment, self.language).map_err(fault)?);
-        }
-        let units: SourceTables = read(&moving.units, moment, self.language).map_err(fault)?;
-        file.replace(units, &moving.indices);
-        Ok(())
-    }
-
-    /// Says where a fault is, and when, if it is where something changes.
-    fn placed(&self, mut fault: SceneError, moment: Moment) -> SceneError {
-        let key = fault.key.as_str();
-        let changes = |track: &String| track.starts_with(key) || key.starts_with(track.as_str());
-        if !key.is_empty() && self.moving.keys.iter().any(changes) {
-            fault.message += &format!(" (at {} s)", moment.time);
-        }
-        if self.language == Language::Toml && !self.text.is_empty() {
-            fault.position = Some(toml::place_of(&self.text, &fault));
-        }
-        fault.path.clone_from(&self.name);
-        fault
-    }
-}
 
 /// A scene of which something is a function of time, by [`Track`]s.
 ///
@@ -151,19 +29,30 @@ impl Motion<'_> {
 /// ```
 #[derive(Debug)]
 pub struct AnimatedScene {
-    document: Document<'static>,
-    /// The depth image and the background, if they are the same at all times, once they were read.
+    pub(super) document: Document<'static>,
     files: OnceLock<Files>,
 }
 
-type Files = (Option<DepthImage>, Option<Background>);
+/// The depth image and the background, if they are the same at all times, once they were read.
+#[derive(Debug)]
+struct Files {
+    /// For which image; `None`: for any.
+    size: Option<ImageSize>,
+    depth: Option<DepthImage>,
+    background: Option<Background>,
+}
 
-/// Gives a scene what was read already.
-fn give_files(scene: &mut Scene, files: Option<&Files>) {
-    if let Some((depth, background)) = files {
-        scene.depth.clone_from(depth);
-        if background.is_some() {
-            scene.display.background.clone_from(background);
+impl Files {
+    /// Gives a scene what it lacks.
+    fn give(&self, scene: &mut Scene) {
+        if self.size.is_some_and(|size| size != scene.image) {
+            return;
+        }
+        if scene.depth.is_none() {
+            scene.depth.clone_from(&self.depth);
+        }
+        if scene.display.background.is_none() {
+            scene.display.background.clone_from(&self.background);
         }
     }
 }
@@ -267,16 +156,25 @@ impl AnimatedScene {
         };
         Ok(Self {
             document: Document { file, motion },
-            files: OnceLock::from((depth, background)),
+            files: OnceLock::from(Files {
+                size: None,
+                depth,
+                background,
+            }),
         })
     }
 
     /// Makes the scene begin again after a positive number of seconds, as `[time] loop` of a file does.
     #[must_use]
     pub fn with_loop(mut self, seconds: f64) -> Self {
-        self.document.file.time = TimeTable {
-            r#loop: Some(seconds),
-        };
+        self.document.file.time.r#loop = Some(seconds);
+        self
+    }
+
+    /// Opens a shutter for such a share of a frame, 0 to 1, as `[time] shutter` of a file does.
+    #[must_use]
+    pub fn with_shutter(mut self, share: f64) -> Self {
+        self.document.file.time.shutter = share;
         self
     }
 
@@ -299,28 +197,92 @@ impl AnimatedScene {
         self.document.file.period()
     }
 
+    /// Returns for which share of a frame the shutter is open, 0 to 1.
+    #[must_use]
+    pub fn shutter(&self) -> f64 {
+        self.document.file.time.shutter
+    }
+
+    /// Returns from when to when the shutter is open in a frame that begins at a time, seconds, of which there are
+    /// `rate` a second: it opens where the frame begins, so that frame n of a scene shows nothing before n / `rate`.
+    /// Empty without a shutter, and where nothing moves.
+    #[must_use]
+    pub fn open_at(&self, time: f64, rate: f64) -> Range<f64> {
+        match self.is_animated() {
+            true => time..time + self.shutter() / rate,
+            false => time..time,
+        }
+    }
+
     /// Returns the scene at a time, seconds, checked.
     ///
     /// # Errors
     /// As [`Scene::from_file`].
     pub fn at(&self, time: f64) -> Result<Scene> {
+        self.at_with(time, |_, _| Ok(()))
+    }
+
+    /// Returns the scene at a time, which `adjust` may change as in [`Scene::from_file_with`].
+    ///
+    /// # Errors
+    /// As [`Scene::from_file_with`].
+    pub fn at_with(
+        &self,
+        time: f64,
+        mut adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<()>,
+    ) -> Result<Scene> {
+        Ok(self.checked(time, &mut adjust)?.0)
+    }
+
+    /// Returns the same, and its warnings, as [`Scene::from_file_with_warnings`] does.
+    ///
+    /// # Errors
+    /// As [`Scene::from_file_with`].
+    pub fn at_with_warnings(
+        &self,
+        time: f64,
+        mut adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<()>,
+    ) -> Result<(Scene, Vec<SceneError>)> {
+        let (scene, groups, moment) = self.checked(time, &mut adjust)?;
+        let motion = &self.document.motion;
+        let warnings = groups.warnings(&scene).into_iter();
+        let placed = warnings.map(|warning| motion.placed(warning, moment));
+        let warnings = placed.collect();
+        Ok((scene, warnings))
+    }
+
+    fn checked(&self, time: f64, adjust: Adjust<'_>) -> Result<(Scene, Groups, Moment)> {
         let Document { file, motion } = &self.document;
-        let mut adjust = |scene: &mut Scene, _: &MethodKeys| {
-            give_files(scene, self.files.get());
+        let mut adjusts = (false, false);
+        let mut adjust = |scene: &mut Scene, keys: &MethodKeys| {
+            adjust(scene, keys)?;
+            adjusts = (scene.depth.is_some(), scene.display.background.is_some());
+            if let Some(files) = self.files.get() {
+                files.give(scene);
+            }
             Ok(())
         };
         let make = |file: SceneFile| file.into_checked(&motion.folder, &mut adjust);
-        let ((scene, _), _) = motion.frame(file.clone(), time, make)?;
+        let ((scene, groups), moment) = motion.frame(file.clone(), time, make)?;
         let changes = |table| {
             let mut keys = motion.moving.keys.iter();
             keys.any(|key| key.starts_with(table))
         };
-        if !["camera.", "image.", "depth."].into_iter().any(changes) {
-            let is_image = |it: &Background| matches!(it, Background::Image(_));
-            let background = scene.display.background.clone().filter(is_image);
-            self.files.get_or_init(|| (scene.depth.clone(), background));
-        }
-        Ok(scene)
+        self.files.get_or_init(|| {
+            let (has_depth, has_background) = adjusts;
+            let is_length =
+                |depth: &DepthImage| depth.options().is_some_and(|it| it.along.is_length());
+            let stays = |depth: &DepthImage| {
+                !has_depth && !changes("depth.") && (is_length(depth) || !changes("camera."))
+            };
+            let background = scene.display.background.clone();
+            Files {
+                size: Some(scene.image),
+                depth: scene.depth.clone().filter(stays),
+                background: background.filter(|_| !has_background),
+            }
+        });
+        Ok((scene, groups, moment))
     }
 
     /// Returns the scene at a time as [`Scene::from_file_with_warnings`] returns that of a file: `adjust` may change
@@ -335,8 +297,11 @@ impl AnimatedScene {
     ) -> Result<(Scene, Vec<SceneError>)> {
         let files = self.files.into_inner();
         self.document.into_frame(time, &mut |scene, keys| {
-            give_files(scene, files.as_ref());
-            adjust(scene, keys)
+            adjust(scene, keys)?;
+            if let Some(files) = &files {
+                files.give(scene);
+            }
+            Ok(())
         })
     }
 }

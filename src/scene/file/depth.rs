@@ -67,6 +67,11 @@ impl DepthTable {
         })
     }
 
+    /// Returns its file, from the folder of the scene.
+    pub(super) fn file(&self) -> &Path {
+        &self.file
+    }
+
     /// Reads the image of a scene; its path is from `folder`.
     pub(super) fn open(&self, folder: &Path, scene: &Scene) -> Result<DepthImage, SceneError> {
         self.check_scale().map_err(|fault| fault.of("depth"))?;

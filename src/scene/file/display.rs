@@ -93,6 +93,14 @@ impl DisplayTable {
         }
     }
 
+    /// Returns the file of its background, from the folder of the scene.
+    pub(super) fn background_file(&self) -> Option<&Path> {
+        match &self.background {
+            Some(BackgroundKey::File(file)) => Some(file),
+            _ => None,
+        }
+    }
+
     /// Gives a scene of right values the exposure that fits it, unless one is named.
     pub(super) fn fit_exposure(&self, scene: &mut Scene) {
         if self.exposure.is_none() {

@@ -1,25 +1,36 @@
-//! `[time]`: after how many seconds a scene begins again.
+//! `[time]`: after how many seconds a scene begins again, and how long its shutter is open.
 
 use serde::Deserialize;
 
-use crate::scene::values::{Checked, positive};
+use crate::scene::values::{Checked, Fault, finite, positive};
 
 /// `[time]` of a scene file.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct TimeTable {
     pub r#loop: Option<f64>,
+    pub shutter: f64,
 }
 
 // What is read of `[time]`.
 keys! { pub(in crate::scene) TIME_KEYS;
     loop: POSITIVE, "seconds", Otherwise("it does not"), "after which the scene begins again, with its noise";
+    shutter: from_to(0.0, 1.0), "frames", Value("0"), "how long the shutter is open, of which a picture is the mean";
 }
 
 impl TimeTable {
     pub(super) fn check(self) -> Checked {
         self.r#loop
-            .map_or(Ok(()), |seconds| positive("loop", seconds))
+            .map_or(Ok(()), |seconds| positive("loop", seconds))?;
+        finite("shutter", self.shutter)?;
+        if (0.0..=1.0).contains(&self.shutter) {
+            return Ok(());
+        }
+        let message = format!(
+            "a share of a frame from 0, not at all, to 1, all of it; found {}",
+            self.shutter
+        );
+        Err(Fault::new("shutter", message))
     }
 
     /// Returns after how many seconds the scene begins again, if that is a time.

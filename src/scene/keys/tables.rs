@@ -180,7 +180,7 @@ pub fn tables() -> Vec<Table> {
         Table::new(
             "time",
             Once,
-            "When the scene begins again, if anything of it moves",
+            "When the scene begins again, and how motion is blurred, if anything moves",
             TIME_KEYS,
         ),
     ];

@@ -1,0 +1,74 @@
+//! How long a scene moves, and what it is made of.
+
+use std::path::PathBuf;
+
+use super::animated::AnimatedScene;
+use super::document::Motion;
+use super::*;
+use crate::scene::Track;
+
+/// How long a scene moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct SceneSpan {
+    /// From 0 s until then, seconds, from 0 on.
+    pub seconds: f64,
+    /// Whether the scene is then as it is at 0 s, to begin again.
+    pub loops: bool,
+}
+
+impl AnimatedScene {
+    /// Returns how long it moves: a turn of its loop; of a scene without one, a cycle if all tracks have the same, else
+    /// until the last key of a track that ends, or the end of a first cycle. `None` if it does not move, or if all that
+    /// moves is noise, which has no end.
+    #[must_use]
+    pub fn span(&self) -> Option<SceneSpan> {
+        let Document { file, motion } = &self.document;
+        motion.span(file)
+    }
+
+    /// Returns the files that it names: a depth image, and a background.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let Document { file, motion } = &self.document;
+        let depth = file.depth.as_ref().map(DepthTable::file);
+        let named = depth.into_iter().chain(file.display.background_file());
+        named.map(|file| motion.folder.join(file)).collect()
+    }
+}
+
+impl Motion<'_> {
+    fn span(&self, file: &SceneFile) -> Option<SceneSpan> {
+        if self.moving.is_empty() {
+            return None;
+        }
+        if let Some(seconds) = file.period() {
+            return Some(SceneSpan {
+                seconds,
+                loops: true,
+            });
+        }
+        let (mut ends, mut cycles) = (Vec::new(), Vec::new());
+        let mut visit = |track: &Track| {
+            ends.extend(track.end());
+            cycles.push(track.cycle().filter(|_| track.noise.is_none()));
+        };
+        self.moving.units.for_each_track(&mut visit);
+        if let Some(singles) = &self.moving.singles {
+            singles.for_each_track(&mut visit);
+        }
+        if let Some(&Some(seconds)) = cycles.first()
+            && cycles.iter().all(|cycle| *cycle == Some(seconds))
+        {
+            return Some(SceneSpan {
+                seconds,
+                loops: true,
+            });
+        }
+        let seconds = ends.into_iter().reduce(f64::max)?.max(0.0);
+        Some(SceneSpan {
+            seconds,
+            loops: false,
+        })
+    }
+}
