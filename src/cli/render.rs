@@ -120,7 +120,12 @@ fn check_bits(arguments: &RenderArguments, format: ImageFormat) -> Result<(), Er
 }
 
 /// Says in the file what it shows, and how that was made.
-fn noted(output: ImageFile, name: &Path, scene: &Scene, devices: &[Device]) -> ImageFile {
+pub(super) fn noted(
+    output: ImageFile,
+    name: &Path,
+    scene: &Scene,
+    devices: &[Device],
+) -> ImageFile {
     let name = match name == Path::new("-") {
         true => "standard input".to_owned(),
         false => shown(&name.file_name().unwrap_or_default().to_string_lossy()),
@@ -152,7 +157,7 @@ fn drawn(image: &RadianceImage, scene: &Scene, took: Duration, device: &str) -> 
 }
 
 /// Writes a number with four digits.
-fn digits(value: f64) -> String {
+pub(super) fn digits(value: f64) -> String {
     let short = format!("{value:.3e}");
     match short.parse::<f64>() {
         Ok(rounded) if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) => {

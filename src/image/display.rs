@@ -56,6 +56,26 @@ impl RadianceImage {
     #[must_use]
     pub fn tone_map(&self, display: &Display) -> DisplayImage {
         let has_alpha = display.has_alpha() && display.alpha == Alpha::Luminance;
+        self.picture(display, has_alpha, stored)
+    }
+
+    /// Makes the picture whose colour is that of the light, encoded, and whose alpha is what it hides: none, all, or
+    /// what [`Alpha::Additive`] and [`Alpha::Luminance`] say where there is no background.
+    #[cfg(feature = "files")]
+    pub(super) fn tone_map_premultiplied(&self, display: &Display) -> DisplayImage {
+        let hides_nothing = display.alpha == Alpha::Additive;
+        self.picture(display, display.has_alpha(), |(color, alpha), white| {
+            let alpha = if hides_nothing { 0.0 } else { alpha };
+            premultiplied((color, alpha), white)
+        })
+    }
+
+    fn picture(
+        &self,
+        display: &Display,
+        has_alpha: bool,
+        stored: impl Fn(Shown, f32) -> [f32; 4] + Send + Sync,
+    ) -> DisplayImage {
         let (channels, bits) = (3 + usize::from(has_alpha), display.bits.unwrap_or(8));
         let bytes = usize::from(bits == 16) + 1;
         let film = Film::new(self, display);
@@ -149,6 +169,12 @@ impl<'a> Film<'a> {
         [red, green, blue, alpha]
     }
 
+    /// Returns whether a screen shows more than a part of white where there is such light.
+    #[cfg(feature = "files")]
+    pub(super) fn is_lit(&self, light: [f32; 3], part: f32) -> bool {
+        most(self.map(light)) > part
+    }
+
     /// Exposes light and maps it to the screen.
     fn map(&self, light: [f32; 3]) -> [f32; 3] {
         self.display
@@ -228,6 +254,13 @@ fn stored((color, alpha): Shown, white: f32) -> [f32; 4] {
         straight[2],
         (alpha * white).round(),
     ]
+}
+
+/// Returns a pixel's values, 0 to `white`, before they are rounded, and its alpha: colour is that of the light.
+#[cfg(feature = "files")]
+fn premultiplied((color, alpha): Shown, white: f32) -> [f32; 4] {
+    let [red, green, blue] = color.map(|channel| white * srgb_encode(channel));
+    [red, green, blue, (alpha * white).round()]
 }
 
 /// Returns interleaved gradient noise in [0,1) (Jimenez 2014), a dither threshold whose error the eye averages away.

@@ -6,6 +6,7 @@ mod host;
 mod host_depth;
 mod layers;
 mod one;
+mod over;
 mod referenced;
 mod several;
 mod shares;

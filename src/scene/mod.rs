@@ -54,7 +54,7 @@ pub(crate) use depth_layers::DepthLayers;
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;
 #[cfg(feature = "files")]
-pub use file::{AnimatedScene, MethodKeys};
+pub use file::{AnimatedScene, MethodKeys, SceneSpan};
 pub use group::{Group, Repeat, Rotation};
 pub use integration::{
     Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,

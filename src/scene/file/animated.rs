@@ -17,21 +17,23 @@ use crate::scene::track::wrapped;
 /// A scene file that was read: as it is at 0 s, and what of it changes.
 #[derive(Debug, Clone)]
 pub(super) struct Document<'a> {
-    file: SceneFile,
-    motion: Motion<'a>,
+    pub(super) file: SceneFile,
+    pub(super) motion: Motion<'a>,
 }
 
 /// What takes a file to another time.
 #[derive(Debug, Clone)]
-struct Motion<'a> {
-    moving: Moving,
+pub(super) struct Motion<'a> {
+    pub(super) moving: Moving,
     language: Language,
     /// The text of the file; of a scene that was made in code, none.
-    text: Cow<'a, str>,
+    pub(super) text: Cow<'a, str>,
     /// What errors call it.
     name: Option<PathBuf>,
     /// Where files are that it names.
-    folder: PathBuf,
+    pub(super) folder: PathBuf,
+    /// The exposure of all times, where the file names none.
+    pub(super) fitting: OnceLock<f64>,
 }
 
 impl<'a> Document<'a> {
@@ -57,6 +59,7 @@ impl<'a> Document<'a> {
             text,
             name: name.map(Path::to_owned),
             folder: folder.to_owned(),
+            fitting: OnceLock::new(),
         };
         Ok(Self { file, motion })
     }
@@ -83,12 +86,10 @@ impl Motion<'_> {
             let message = format!("{time} is no time; it is a finite number of seconds");
             return Err(SceneError::value("", message).into());
         }
-        let period = file.period();
-        let moment = Moment {
-            time: period.map_or(time, |period| wrapped(time, period)),
-            period,
-        };
+        let moment = self.moment(&file, time);
+        let exposure = self.exposure(&file);
         self.go_to(&mut file, moment)?;
+        file.display.exposure = file.display.exposure.or(exposure);
         match make(file) {
             Ok(made) => Ok((made, moment)),
             Err(Error::Scene(fault)) => Err(self.placed(fault, moment).into()),
@@ -96,8 +97,17 @@ impl Motion<'_> {
         }
     }
 
+    /// Returns when a time is in the scene's loop.
+    pub(super) fn moment(&self, file: &SceneFile, time: f64) -> Moment {
+        let period = file.period();
+        Moment {
+            time: period.map_or(time, |period| wrapped(time, period)),
+            period,
+        }
+    }
+
     /// Reads again what changes.
-    fn go_to(&self, file: &mut SceneFile, moment: Moment) -> Result<()> {
+    pub(super) fn go_to(&self, file: &mut SceneFile, moment: Moment) -> Result<()> {
         let moving = &self.moving;
         if moving.is_empty() || moment.time == 0.0 {
             return Ok(());
@@ -151,7 +161,7 @@ impl Motion<'_> {
 /// ```
 #[derive(Debug)]
 pub struct AnimatedScene {
-    document: Document<'static>,
+    pub(super) document: Document<'static>,
     /// The depth image and the background, if they are the same at all times, once they were read.
     files: OnceLock<Files>,
 }
@@ -264,6 +274,7 @@ impl AnimatedScene {
             text: Cow::Borrowed(""),
             name: None,
             folder: PathBuf::new(),
+            fitting: OnceLock::new(),
         };
         Ok(Self {
             document: Document { file, motion },
@@ -304,10 +315,22 @@ impl AnimatedScene {
     /// # Errors
     /// As [`Scene::from_file`].
     pub fn at(&self, time: f64) -> Result<Scene> {
+        self.at_with(time, |_, _| Ok(()))
+    }
+
+    /// Like [`AnimatedScene::at`]; `adjust` may change the scene as that of [`Scene::from_file_with`] does.
+    ///
+    /// # Errors
+    /// As [`Scene::from_file_with`].
+    pub fn at_with(
+        &self,
+        time: f64,
+        mut adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<()>,
+    ) -> Result<Scene> {
         let Document { file, motion } = &self.document;
-        let mut adjust = |scene: &mut Scene, _: &MethodKeys| {
+        let mut adjust = |scene: &mut Scene, keys: &MethodKeys| {
             give_files(scene, self.files.get());
-            Ok(())
+            adjust(scene, keys)
         };
         let make = |file: SceneFile| file.into_checked(&motion.folder, &mut adjust);
         let ((scene, _), _) = motion.frame(file.clone(), time, make)?;

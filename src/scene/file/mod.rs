@@ -13,6 +13,7 @@ mod numbers;
 mod pieces;
 mod piped;
 mod scan;
+mod span;
 mod time;
 mod toml;
 mod tracks;
@@ -40,6 +41,7 @@ pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
 pub use integration::MethodKeys;
 use scan::UNIT_COUNT;
+pub use span::SceneSpan;
 pub(super) use time::TIME_KEYS;
 use time::TimeTable;
 pub(super) use tracks::TRACK_KEYS;
@@ -188,6 +190,13 @@ impl SceneFile {
         self.display = other.display;
         self.depth = other.depth;
         self.time = other.time;
+    }
+
+    /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
+    fn exposure_of_brightest(mut self) -> Option<f64> {
+        let mut scene = self.scene();
+        Groups::add_to(&mut scene, std::mem::take(&mut self.group)).ok()?;
+        scene.exposure_of_brightest()
     }
 
     /// Checks the scene, lets `adjust` change it, reads a depth image and a background unless it has given them, and

@@ -116,6 +116,16 @@ impl Node {
         }
     }
 
+    /// Shows all tracks in it.
+    pub(super) fn for_each_track(&self, visit: &mut impl FnMut(&Track)) {
+        match self {
+            Self::Track(track) => visit(track),
+            Self::List(items) => items.iter().for_each(|item| item.for_each_track(visit)),
+            Self::Table(entries) => entries.iter().for_each(|it| it.1.for_each_track(visit)),
+            _ => {}
+        }
+    }
+
     /// Sets a track in the place of the value of a key such as `torus[0].color`; `None` where there is no such place.
     pub(super) fn put(&mut self, key: &str, track: Track) -> Option<()> {
         let mut node = self;

@@ -179,6 +179,17 @@ impl Track {
         }
     }
 
+    /// Returns until when it changes for the first time: its last key, or the end of its first cycle; `None` if all
+    /// that changes is noise.
+    #[cfg(feature = "files")]
+    pub(super) fn end(&self) -> Option<f64> {
+        let (first, last) = self.span()?;
+        Some(match self.cycle() {
+            Some(cycle) => first + cycle,
+            None => last - self.phase * (last - first),
+        })
+    }
+
     /// Returns which time between its first and its last key a time is.
     /// A track that repeats is at its first key where it is at its last.
     fn place(&self, time: f64) -> f64 {

@@ -1,0 +1,122 @@
+//! How long a scene moves, what it is made of, and the exposure that fits all of its times.
+
+use std::path::PathBuf;
+
+use super::animated::{AnimatedScene, Motion};
+use super::display::ExposureKey;
+use super::*;
+use crate::scene::Track;
+
+/// How long a scene moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct SceneSpan {
+    /// From 0 s until then, seconds, from 0 on.
+    pub seconds: f64,
+    /// Whether the scene is then as it is at 0 s, to begin again.
+    pub loops: bool,
+}
+
+/// At so many times, evenly from the first to the last, the exposure is to fit that a moving scene gets.
+const EXPOSED_TIMES: u32 = 33;
+
+/// How long noise is looked at that has no end, seconds.
+const NOISE_SECONDS: f64 = 1.0;
+
+impl AnimatedScene {
+    /// Returns how long it moves: a turn of its loop; of a scene without one, a cycle if all tracks have the same, else
+    /// until the last key of a track that ends, or the end of a first cycle. `None` if it does not move, or if all that
+    /// moves is noise, which has no end.
+    #[must_use]
+    pub fn span(&self) -> Option<SceneSpan> {
+        let Document { file, motion } = &self.document;
+        motion.span(file)
+    }
+
+    /// Returns the text that it was read from; empty if it was made in code.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.document.motion.text
+    }
+
+    /// Returns the files that it names: a depth image, and a background.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let Document { file, motion } = &self.document;
+        let depth = file.depth.as_ref().map(DepthTable::file);
+        let named = depth.into_iter().chain(file.display.background_file());
+        named.map(|file| motion.folder.join(file)).collect()
+    }
+
+    /// Returns what the scene at a time was hardly meant to say, as [`Scene::from_file_with_warnings`] does.
+    ///
+    /// # Errors
+    /// As [`AnimatedScene::at_with`].
+    pub fn warnings_at(
+        &self,
+        time: f64,
+        mut adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<()>,
+    ) -> Result<Vec<SceneError>> {
+        let read = self.document.clone().into_frame(time, &mut adjust)?;
+        Ok(read.1)
+    }
+}
+
+impl Motion<'_> {
+    fn span(&self, file: &SceneFile) -> Option<SceneSpan> {
+        if self.moving.is_empty() {
+            return None;
+        }
+        if let Some(seconds) = file.period() {
+            return Some(SceneSpan {
+                seconds,
+                loops: true,
+            });
+        }
+        let (mut ends, mut cycles) = (Vec::new(), Vec::new());
+        let mut visit = |track: &Track| {
+            ends.extend(track.end());
+            cycles.push(track.cycle().filter(|_| track.noise.is_none()));
+        };
+        self.moving.units.for_each_track(&mut visit);
+        if let Some(singles) = &self.moving.singles {
+            singles.for_each_track(&mut visit);
+        }
+        if let Some(&Some(seconds)) = cycles.first()
+            && cycles.iter().all(|cycle| *cycle == Some(seconds))
+        {
+            return Some(SceneSpan {
+                seconds,
+                loops: true,
+            });
+        }
+        let seconds = ends.into_iter().reduce(f64::max)?.max(0.0);
+        Some(SceneSpan {
+            seconds,
+            loops: false,
+        })
+    }
+
+    /// Returns the exposure of a scene that moves and names none: the one that fits its brightest moment, at all times,
+    /// so that no frame is overexposed, and light that swells or fades is not levelled out.
+    pub(super) fn exposure(&self, file: &SceneFile) -> Option<ExposureKey> {
+        if self.moving.is_empty() || file.display.exposure.is_some() {
+            return None;
+        }
+        let stops = *self.fitting.get_or_init(|| self.fitting_exposure(file));
+        Some(ExposureKey(stops.into()))
+    }
+
+    fn fitting_exposure(&self, file: &SceneFile) -> f64 {
+        let seconds = self.span(file).map_or(NOISE_SECONDS, |span| span.seconds);
+        let times =
+            (0..EXPOSED_TIMES).map(|step| seconds * f64::from(step) / f64::from(EXPOSED_TIMES - 1));
+        let fitting = times.filter_map(|time| {
+            let (mut file, moment) = (file.clone(), self.moment(file, time));
+            // What is wrong at a time is told to who draws it.
+            self.go_to(&mut file, moment).ok()?;
+            file.exposure_of_brightest()
+        });
+        fitting.reduce(f64::min).unwrap_or(0.0)
+    }
+}
