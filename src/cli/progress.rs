@@ -1,5 +1,6 @@
 //! Progress on standard error, for work that takes longer than a second; and Ctrl-C.
 
+use std::fmt::Write;
 use std::io::{IsTerminal, stderr};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use super::is_quiet;
 
@@ -152,11 +153,14 @@ impl Drop for Preparing {
 
 fn new_bar(begun: Instant, frames: Option<u32>) -> ProgressBar {
     let words = match frames {
-        Some(_) => "{bar:40} {pos} of {len} frames, {per_sec}, {elapsed}, {eta} left",
+        Some(_) => "{bar:40} {pos} of {len} frames, {rate} a second, {elapsed}, {eta} left",
         None => "{bar:40} {percent:>3} % {elapsed}, {eta} left",
     };
     let style =
         ProgressStyle::with_template(words).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style = style.with_key("rate", |state: &ProgressState, text: &mut dyn Write| {
+        let _ = write!(text, "{:.1}", state.per_sec()); // a text takes all
+    });
     ProgressBar::new(frames.map_or(1000, u64::from))
         .with_style(style)
         .with_elapsed(begun.elapsed())

@@ -78,17 +78,16 @@ impl ImageFile {
     #[must_use]
     pub fn fingerprint_of(path: impl AsRef<Path>) -> Option<String> {
         let path = path.as_ref();
-        match ImageFormat::of(path) {
-            Ok(ImageFormat::Exr) => {
-                let comments = OpenExr::open(path).ok()?.comments_of_whole()?;
-                let line = comments
-                    .lines()
-                    .find_map(|line| line.strip_prefix(FINGERPRINT));
-                line.map(str::to_owned)
-            }
-            Ok(ImageFormat::Png) => png_file::fingerprint(path),
-            _ => None,
+        if !path.is_file() {
+            return None; // a pipe has none, and would be waited for
         }
+        png_file::fingerprint(path).or_else(|| {
+            let comments = OpenExr::open(path).ok()?.comments_of_whole()?;
+            let line = comments
+                .lines()
+                .find_map(|line| line.strip_prefix(FINGERPRINT));
+            line.map(str::to_owned)
+        })
     }
 
     /// Returns the format that it will have.

@@ -148,6 +148,18 @@ fn whole_frames_of_the_same_scene_are_drawn_once() {
 }
 
 #[test]
+fn frames_of_any_ending_are_known_again() {
+    let folder = Folder::new();
+    scene(&folder, "a.toml", "");
+    for format in ["png", "exr"] {
+        let arguments = ["-o", "f.%02d.data", "--format", format, "--frames", "1..2"];
+        assert_eq!(counts(&folder, &arguments), [2, 0, 0]);
+        assert_eq!(counts(&folder, &arguments), [0, 2, 0]);
+    }
+    assert_eq!(sorted(&folder), ["a.toml", "f.01.data", "f.02.data"]);
+}
+
+#[test]
 fn shares_make_together_what_one_makes() {
     let folder = Folder::new();
     scene(&folder, "a.toml", "[display]\nexposure = \"auto\"\n");

@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 
 use energywave::Error;
 
+/// What is said of the name of a folder.
+pub const FOLDER: &str = "it is a folder; name the frames in it, such as f.png";
+
 /// Digits of a number that has no place of its own.
 const DIGITS: usize = 4;
 
@@ -24,10 +27,9 @@ impl Names {
     /// [`Error::Output`] if it is a folder, or no text.
     pub fn of(path: &Path) -> Result<Self, Error> {
         let names_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
-        let name = path.file_name().filter(|_| !names_folder && !path.is_dir());
+        let name = path.file_name().filter(|_| !names_folder);
         let Some(name) = name else {
-            let reason = "it is a folder; name the frames in it, such as f.png";
-            return Err(Error::output(path, reason));
+            return Err(Error::output(path, FOLDER));
         };
         let Some(name) = name.to_str() else {
             return Err(Error::output(
@@ -109,7 +111,7 @@ mod tests {
             assert_eq!(names.path(7), folder.path().join(first));
             assert_eq!(names.path(123_456), folder.path().join(large));
         }
-        for typed in ["", "none/"] {
+        for typed in ["none/", ".."] {
             assert!(Names::of(&folder.path().join(typed)).is_err(), "{typed}");
         }
         let inside = Names::of(Path::new("a#b/c.png")).unwrap();

@@ -9,7 +9,7 @@ use energywave::image::{
 use energywave::{Error, shown};
 
 use super::arguments::{AnimateArguments, FramesFormat, Range};
-use super::names::Names;
+use super::names::{FOLDER, Names};
 
 /// Where frames go.
 #[derive(Debug)]
@@ -38,6 +38,9 @@ impl Target {
     pub fn of(arguments: &AnimateArguments) -> Result<Self, Error> {
         let path = &arguments.output;
         let is_stdout = path == Path::new("-");
+        if path.is_dir() {
+            return Err(Error::output(path, FOLDER));
+        }
         let format = match arguments.format {
             Some(format) => format,
             None => format_of(path)?,
