@@ -1,4 +1,5 @@
 //! The program `energywave`: see `energywave --help` and README.md.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod cli;
 

@@ -1,15 +1,15 @@
 //! What can be typed.
 
-use std::cell::OnceCell;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use energywave::image::{DepthAlong, DepthImage, DepthOptions, Exposure, ImageSize};
-use energywave::scene::{Antialias, Method, MethodKeys, Sampling, Scene};
-use energywave::{Error, RendererOptions, SlowStart};
+use energywave::image::{Exposure, ImageSize};
+use energywave::{RendererOptions, SlowStart};
 
+use super::animate::AnimateArguments;
 use super::examples;
+use super::overrides::Overrides;
 use super::subcommands::*;
 use super::warn;
 use super::watch::WatchArguments;
@@ -30,6 +30,9 @@ pub enum Command {
     /// Draw a scene
     #[command(after_help = examples::RENDER)]
     Render(RenderArguments),
+    /// Draw the frames of a scene that moves
+    #[command(after_help = examples::ANIMATE)]
+    Animate(AnimateArguments),
     /// Draw a scene again whenever it is saved: to a file, or in a window
     #[command(after_help = examples::WATCH)]
     Watch(WatchArguments),
@@ -130,90 +133,6 @@ pub const SLOW_START: SlowStart = SlowStart {
     tell: warn,
 };
 
-/// Options that replace values of the scene file.
-#[derive(Debug, Args)]
-pub struct Overrides {
-    /// Size of the image in pixels, such as 640x360
-    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, requires = "scene")]
-    pub size: Option<ImageSize>,
-    /// The quadrature
-    #[arg(long, requires = "scene")]
-    pub method: Option<MethodName>,
-    /// Divisions of --method simpson or jittered, even, 2 to 65536; chooses simpson where the scene has neither
-    #[arg(long, value_parser = divisions, allow_hyphen_values = true, requires = "scene")]
-    pub divisions: Option<u32>,
-    /// Relative error aimed at by the exact method; chooses --method exact
-    #[arg(long, value_parser = tolerance, allow_hyphen_values = true, requires = "scene")]
-    pub tolerance: Option<f64>,
-    /// Where the exact method takes integrals [default: the scene's, else tiles]; chooses --method exact
-    #[arg(long, requires = "scene")]
-    pub sampling: Option<SamplingName>,
-    /// Which rays a pixel of the exact method stands for [default: the scene's, else footprint]
-    #[arg(long, value_enum)]
-    pub antialias: Option<AntialiasName>,
-    /// Depth image (.exr, 16-bit .png, .raw or .f32) of the scene's size, which hides the light behind it
-    #[arg(long, value_name = "FILE", requires = "scene")]
-    pub depth: Option<PathBuf>,
-    /// What the depths of --depth are lengths of [default: ray]
-    #[arg(long, value_name = "WAY", requires = "depth")]
-    pub depth_along: Option<DepthAlongName>,
-    /// Exact name of the channel of --depth that holds the depths, such as ViewLayer.Depth.Z, or part.channel
-    /// [default: Z, else the one whose name says depth]
-    #[arg(long, value_name = "NAME", requires = "depth")]
-    pub depth_channel: Option<String>,
-    /// World units to a unit of --depth, such as 0.01 for centimetres in a scene in metres [default: 1]
-    #[arg(long, value_name = "FACTOR", value_parser = scale, allow_hyphen_values = true, requires = "depth")]
-    pub depth_scale: Option<f64>,
-    /// Value of --depth that means that nothing is there, such as 0, -1 or nan; infinity always does
-    #[arg(
-        long,
-        value_name = "VALUE",
-        allow_hyphen_values = true,
-        requires = "depth"
-    )]
-    pub depth_none: Option<f64>,
-    /// The image of --depth, once it was read, unless it depends on a camera that may move.
-    #[arg(skip)]
-    pub opened_depth: OnceCell<DepthImage>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum DepthAlongName {
-    /// The view ray: a distance from the eye
-    Ray,
-    /// The direction of view, as most renderers' Z
-    Axis,
-    /// z / w behind the projection of the scene's camera
-    Ndc,
-    /// The same as depth buffers hold it, 0 to 1
-    Buffer,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum AntialiasName {
-    /// All that pass its square: their mean
-    Footprint,
-    /// The one through its centre, as in the papers
-    None,
-}
-
-impl From<AntialiasName> for Antialias {
-    fn from(name: AntialiasName) -> Self {
-        match name {
-            AntialiasName::Footprint => Self::Footprint,
-            AntialiasName::None => Self::None,
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum SamplingName {
-    /// At every pixel
-    Pixels,
-    /// At every pixel near cores, interpolated within the tolerance elsewhere
-    Tiles,
-}
-
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum FormatName {
     /// sRGB, tone-mapped
@@ -224,132 +143,6 @@ pub enum FormatName {
     Webp,
     /// 8-bit sRGB, tone-mapped, without alpha
     Jpeg,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum MethodName {
-    /// Composite Simpson rule with equal divisions, as in the paper of 2015
-    Simpson,
-    /// Stratified samples, at a random place of each pixel's divisions
-    Jittered,
-    /// The integral itself
-    Exact,
-}
-
-impl Overrides {
-    /// Returns whether nothing was typed.
-    pub fn is_empty(&self) -> bool {
-        self.size.is_none()
-            && self.method.is_none()
-            && self.divisions.is_none()
-            && self.tolerance.is_none()
-            && self.sampling.is_none()
-            && self.antialias.is_none()
-            && self.depth.is_none()
-    }
-
-    /// Replaces what was typed. `keys` is what the file says of all methods.
-    pub fn apply(&self, scene: &mut Scene, keys: &MethodKeys) -> Result<(), Error> {
-        if let Some(size) = self
-            .size
-            .filter(|size| size.width.max(size.height) > ImageSize::LIMIT)
-        {
-            return Err(Error::input(
-                "--size",
-                format!(
-                    "{}x{} pixels; an image is at most {limit}x{limit}",
-                    size.width,
-                    size.height,
-                    limit = ImageSize::LIMIT
-                ),
-            ));
-        }
-        scene.image = self.size.unwrap_or(scene.image);
-        if let Some(file) = &self.depth {
-            scene.depth = Some(match self.opened_depth.get() {
-                Some(depth) => depth.clone(),
-                None => self.open_depth(file, scene)?,
-            });
-        }
-        scene.integration.method = self.method(scene.integration.method, keys)?;
-        if let Some(name) = self.antialias {
-            scene.integration.antialias = name.into();
-        }
-        Ok(())
-    }
-
-    fn method(&self, of_scene: Method, keys: &MethodKeys) -> Result<Method, Error> {
-        let asks_sum = self.divisions.is_some();
-        let asks_exact = self.tolerance.is_some() || self.sampling.is_some();
-        let of_scene = match of_scene {
-            Method::Simpson { .. } => MethodName::Simpson,
-            Method::Jittered { .. } => MethodName::Jittered,
-            _ => MethodName::Exact,
-        };
-        let name = match self.method {
-            Some(name) => name,
-            // Naming divisions asks for a sum of so many; naming a tolerance asks for it to be met.
-            None if asks_sum == asks_exact => of_scene,
-            None if asks_exact => MethodName::Exact,
-            None if of_scene == MethodName::Exact => MethodName::Simpson,
-            None => of_scene,
-        };
-        if name != MethodName::Exact && self.sampling == Some(SamplingName::Tiles) {
-            let message = "--sampling tiles is for --method exact; the others take every pixel";
-            return Err(Error::Unsupported(message.to_owned()));
-        }
-        let divisions = self.divisions.unwrap_or(keys.divisions);
-        let sampling = match self.sampling {
-            Some(SamplingName::Pixels) => Sampling::Pixels,
-            Some(SamplingName::Tiles) => Sampling::Tiles,
-            None => keys.sampling,
-        };
-        Ok(match name {
-            MethodName::Simpson => Method::Simpson { divisions },
-            MethodName::Jittered => Method::Jittered {
-                divisions,
-                seed: keys.seed,
-            },
-            MethodName::Exact => Method::Exact {
-                tolerance: self.tolerance.unwrap_or(keys.tolerance),
-                sampling,
-            },
-        })
-    }
-
-    /// Opens the image of `--depth`, for a scene.
-    fn open_depth(&self, file: &Path, scene: &Scene) -> Result<DepthImage, Error> {
-        let image = scene.image;
-        let mut options = DepthOptions::from(match self.depth_along {
-            Some(DepthAlongName::Axis) => DepthAlong::Axis,
-            Some(DepthAlongName::Ndc) => DepthAlong::Ndc,
-            Some(DepthAlongName::Buffer) => DepthAlong::Buffer,
-            Some(DepthAlongName::Ray) | None => DepthAlong::Ray,
-        });
-        options.channel.clone_from(&self.depth_channel);
-        options.scale = self.depth_scale.unwrap_or(options.scale);
-        options.none = self.depth_none;
-        options.size = Some(image);
-        if let (false, Some(matrices)) = (options.along.is_length(), &scene.camera.matrices) {
-            options.clip = Some(matrices.clip_depth()?);
-        }
-        let is_length = options.along.is_length();
-        let depth = DepthImage::open(file, options)?;
-        let size = depth.size();
-        if size != image {
-            return Err(Error::input(
-                file,
-                format!(
-                    "{}x{} pixels, the image has {}x{}; they must be equal",
-                    size.width, size.height, image.width, image.height
-                ),
-            ));
-        }
-        if is_length {
-            let _ = self.opened_depth.set(depth.clone()); // it was empty
-        }
-        Ok(depth)
-    }
 }
 
 pub(super) fn size(text: &str) -> Result<ImageSize, String> {
@@ -363,14 +156,14 @@ pub(super) fn size(text: &str) -> Result<ImageSize, String> {
     }
 }
 
-fn divisions(text: &str) -> Result<u32, String> {
+pub(super) fn divisions(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(divisions @ 2..=65536) if divisions % 2 == 0 => Ok(divisions),
         _ => Err("Simpson's rule needs an even number from 2 to 65536".to_owned()),
     }
 }
 
-fn exposure(text: &str) -> Result<Exposure, String> {
+pub(super) fn exposure(text: &str) -> Result<Exposure, String> {
     match (text, text.parse()) {
         ("auto", _) => Ok(Exposure::Auto),
         (_, Ok(stops)) if (-100.0..=100.0).contains(&stops) => Ok(Exposure::Stops(stops)),
@@ -378,7 +171,7 @@ fn exposure(text: &str) -> Result<Exposure, String> {
     }
 }
 
-fn scale(text: &str) -> Result<f64, String> {
+pub(super) fn scale(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(scale) if f64::is_finite(scale) && scale != 0.0 => Ok(scale),
         _ => Err("a scale is a number but 0, such as 0.01".to_owned()),

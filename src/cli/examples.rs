@@ -17,6 +17,14 @@ Examples:
   energywave render laser.toml -o laser.png --time 1.5 --fps 24
   energywave new nova -o - | energywave render - -o nova.png --size 320x180";
 
+pub const ANIMATE: &str = "\
+Examples:
+  energywave animate pulse.toml -o frames/f.exr
+  energywave animate pulse.toml -o f.####.png --frames 0..239 --fps 24 --shard 1/4
+  energywave animate pulse.toml -o pulse.apng --size 320x180
+  energywave animate pulse.toml -o pulse.png --flipbook 8x8 --padding 2 --size 128x128
+  energywave animate pulse.toml -o - > pulse.y4m";
+
 pub const WATCH: &str = "\
 Examples:
   energywave watch laser.toml -o laser.png

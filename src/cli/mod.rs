@@ -1,5 +1,6 @@
 //! The program: what was typed ([`args`]), then what is done, one file for each subcommand, then an exit code.
 
+mod animate;
 mod args;
 mod bench;
 mod compare;
@@ -10,6 +11,7 @@ mod examples;
 mod figures;
 mod help;
 mod new;
+mod overrides;
 mod progress;
 mod records;
 mod render;
@@ -37,6 +39,10 @@ enum Failure {
     Error(Error),
     /// Some rays are off by more than the limit.
     Verification(String),
+    /// The reader of what was written has left: nothing is said, that program has its own reasons.
+    Unread,
+    /// Ctrl-C was pressed; what has been done says this.
+    Interrupted(String),
     /// Standard output cannot be written.
     Stdout(io::Error),
 }
@@ -61,6 +67,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
     warnings.iter().for_each(|warning| warn(warning));
     let outcome = match arguments.command {
         Command::Render(arguments) => render::run(arguments),
+        Command::Animate(arguments) => animate::run(&arguments),
         Command::Watch(arguments) => watch::run(arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
@@ -79,6 +86,8 @@ pub fn run(warnings: &[String]) -> ExitCode {
     let (message, code) = match failure {
         Failure::Error(error) => (format!("{error}{}", hint(&error)), exit_code(&error)),
         Failure::Verification(message) => (message, 6),
+        Failure::Interrupted(message) => (message, 130),
+        Failure::Unread => return ExitCode::from(7),
         // The reader of a pipe may leave early; that is not our failure.
         Failure::Stdout(error) if error.kind() == io::ErrorKind::BrokenPipe => {
             return ExitCode::SUCCESS;
@@ -147,7 +156,7 @@ fn hint(error: &Error) -> &'static str {
 
 /// Chooses the devices of `--device`, else of `ENERGYWAVE_DEVICE`, else the best, and says on standard error which they
 /// are.
-fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Failure> {
+fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Error> {
     let devices = Devices::discover();
     let variable = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_default();
     let choice = flag.or(Some(variable.as_str()).filter(|word| !word.is_empty()));

@@ -1,5 +1,6 @@
 //! Progress on standard error, for work that takes longer than a second; and Ctrl-C.
 
+use std::fmt::Write;
 use std::io::{IsTerminal, stderr};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use super::is_quiet;
 
@@ -64,6 +65,8 @@ pub struct Progress {
     is_shown: bool,
     preparing: Option<Preparing>,
     bar: Option<Shown>,
+    /// How many frames the work is, if it is counted by them.
+    frames: Option<u32>,
 }
 
 impl Progress {
@@ -76,16 +79,34 @@ impl Progress {
             is_shown,
             preparing: is_shown.then(|| Preparing::begin(PATIENCE)).flatten(),
             bar: None,
+            frames: None,
         }
+    }
+
+    /// Does the same for work that is counted by frames.
+    pub fn of_frames(count: u32) -> Self {
+        Self {
+            frames: Some(count),
+            ..Self::new()
+        }
+    }
+
+    /// Shows how many frames are done; breaks after Ctrl-C.
+    pub fn report_frames(&mut self, done: u32) -> ControlFlow<()> {
+        self.show(|bar| bar.set_position(done.into()))
     }
 
     /// Shows the finished share, 0 to 1; breaks after Ctrl-C.
     pub fn report(&mut self, share: f32) -> ControlFlow<()> {
+        self.show(|bar| bar.set_position((share * 1000.0) as u64))
+    }
+
+    fn show(&mut self, update: impl FnOnce(&ProgressBar)) -> ControlFlow<()> {
         self.preparing = None;
         if self.is_shown && self.begun.elapsed() > PATIENCE {
-            let begun = self.begun;
-            let bar = self.bar.get_or_insert_with(|| Shown::new(new_bar(begun)));
-            bar.0.set_position((share * 1000.0) as u64);
+            let (begun, frames) = (self.begun, self.frames);
+            let new = || Shown::new(new_bar(begun, frames));
+            update(&self.bar.get_or_insert_with(new).0);
         }
         if was_interrupted() {
             ControlFlow::Break(())
@@ -130,10 +151,17 @@ impl Drop for Preparing {
     }
 }
 
-fn new_bar(begun: Instant) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed}, {eta} left")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(1000)
+fn new_bar(begun: Instant, frames: Option<u32>) -> ProgressBar {
+    let words = match frames {
+        Some(_) => "{bar:40} {pos} of {len} frames, {rate} a second, {elapsed}, {eta} left",
+        None => "{bar:40} {percent:>3} % {elapsed}, {eta} left",
+    };
+    let style =
+        ProgressStyle::with_template(words).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style = style.with_key("rate", |state: &ProgressState, text: &mut dyn Write| {
+        let _ = write!(text, "{:.1}", state.per_sec()); // a text takes all
+    });
+    ProgressBar::new(frames.map_or(1000, u64::from))
         .with_style(style)
         .with_elapsed(begun.elapsed())
 }

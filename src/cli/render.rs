@@ -217,7 +217,7 @@ pub(super) fn drawn(
 }
 
 /// Writes a number with four digits.
-fn digits(value: f64) -> String {
+pub(super) fn digits(value: f64) -> String {
     let short = format!("{value:.3e}");
     match short.parse::<f64>() {
         Ok(rounded) if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) => {

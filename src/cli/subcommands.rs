@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use energywave::image::ImageSize;
 
-use super::args::{DeviceArgument, Overrides, seconds, size, tolerance};
+use super::args::{DeviceArgument, seconds, size, tolerance};
+use super::overrides::Overrides;
 use super::records::DataArgument;
 
 #[derive(Debug, Args)]

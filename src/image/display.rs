@@ -56,24 +56,48 @@ impl RadianceImage {
     #[must_use]
     pub fn tone_map(&self, display: &Display) -> DisplayImage {
         let has_alpha = display.has_alpha() && display.alpha == Alpha::Luminance;
+        self.picture(display, has_alpha, stored)
+    }
+
+    /// Makes the picture whose colour is that of the light, encoded, and whose alpha is what it hides: none, all, or
+    /// what [`Alpha::Additive`] and [`Alpha::Luminance`] say where there is no background.
+    #[cfg(feature = "files")]
+    pub(super) fn tone_map_premultiplied(&self, display: &Display) -> DisplayImage {
+        let hides_nothing = display.alpha == Alpha::Additive;
+        self.picture(display, display.has_alpha(), |(color, alpha), white| {
+            let alpha = if hides_nothing { 0.0 } else { alpha };
+            premultiplied((color, alpha), white)
+        })
+    }
+
+    fn picture(
+        &self,
+        display: &Display,
+        has_alpha: bool,
+        stored: impl Fn(Shown, f32) -> [f32; 4] + Send + Sync,
+    ) -> DisplayImage {
         let (channels, bits) = (3 + usize::from(has_alpha), display.bits.unwrap_or(8));
         let bytes = usize::from(bits == 16) + 1;
         let film = Film::new(self, display);
         let white = if bytes == 1 { 255.0 } else { 65535.0 };
-        let store = |(column, row): (usize, usize), shown: Shown, pixel: &mut [u8]| match bytes {
+        let store = |(column, row): (usize, usize), values: [f32; 4], pixel: &mut [u8]| match bytes
+        {
             1 => {
                 let threshold = gradient_noise(column, row);
-                for (byte, value) in pixel.iter_mut().zip(stored(shown, white)) {
+                for (byte, value) in pixel.iter_mut().zip(values) {
                     *byte = (value + threshold) as u8;
                 }
             }
             _ => {
-                let values = stored(shown, white);
                 for (pair, value) in pixel.chunks_exact_mut(2).zip(values) {
                     pair.copy_from_slice(&((value + 0.5) as u16).to_ne_bytes());
                 }
             }
         };
+        // Where there is no light, which is most of many pictures, nothing has to be worked out.
+        let nothing = || stored(film.shown(0, [0.0; 3], white), white);
+        let is_black =
+            display.background.is_none() && nothing()[..channels] == [0.0; 4][..channels];
         let width = self.size.width as usize;
         let pixel_bytes = bytes * channels;
         let mut data = vec![0_u8; pixel_bytes * self.size.pixels()];
@@ -82,8 +106,11 @@ impl RadianceImage {
             let pixels = pixels.chunks_exact_mut(pixel_bytes);
             for (column, (pixel, light)) in pixels.zip(light.chunks_exact(4)).enumerate() {
                 let light = [light[0], light[1], light[2]];
+                if is_black && light == [0.0; 3] {
+                    continue; // as it was made
+                }
                 let shown = film.shown(row * width + column, light, white);
-                store((column, row), shown, pixel);
+                store((column, row), stored(shown, white), pixel);
             }
         });
         DisplayImage {
@@ -147,6 +174,12 @@ impl<'a> Film<'a> {
             (None, _) => (light, hidden),
         };
         [red, green, blue, alpha]
+    }
+
+    /// Returns whether a screen shows more than a part of white where there is such light.
+    #[cfg(feature = "files")]
+    pub(super) fn is_lit(&self, light: [f32; 3], part: f32) -> bool {
+        most(self.map(light)) > part
     }
 
     /// Exposes light and maps it to the screen.
@@ -218,22 +251,33 @@ fn most(color: [f32; 3]) -> f32 {
 /// Returns a pixel's values, 0 to `white`, before they are rounded, and its alpha. Colour is divided by the alpha that
 /// is stored: so dark light is as exact over black as opaque light is.
 fn stored((color, alpha): Shown, white: f32) -> [f32; 4] {
-    let straight = color.map(|channel| match alpha > 0.0 {
-        true => white * srgb_encode(channel / alpha),
-        false => 0.0,
-    });
-    [
-        straight[0],
-        straight[1],
-        straight[2],
-        (alpha * white).round(),
-    ]
+    let values = |color: [f32; 3], alpha: f32| {
+        let [red, green, blue] = color.map(|channel| white * srgb_encode(channel));
+        [red, green, blue, alpha]
+    };
+    match alpha {
+        1.0 => values(color, white),
+        alpha if alpha > 0.0 => values(color.map(|it| it / alpha), (alpha * white).round()),
+        _ => [0.0; 4],
+    }
+}
+
+/// Returns a pixel's values, 0 to `white`, before they are rounded, and its alpha: colour is that of the light.
+#[cfg(feature = "files")]
+fn premultiplied((color, alpha): Shown, white: f32) -> [f32; 4] {
+    let [red, green, blue] = color.map(|channel| white * srgb_encode(channel));
+    [red, green, blue, (alpha * white).round()]
 }
 
 /// Returns interleaved gradient noise in [0,1) (Jimenez 2014), a dither threshold whose error the eye averages away.
 fn gradient_noise(column: usize, row: usize) -> f32 {
     let phase = 0.067_110_56 * column as f64 + 0.005_837_15 * row as f64;
-    ((52.982_918_9 * phase.fract()).fract() as f32).min(0.999)
+    (fraction(52.982_918_9 * fraction(phase)) as f32).min(0.999)
+}
+
+/// Returns a positive number without its whole part, without the call that this is on processors of the base line.
+fn fraction(value: f64) -> f64 {
+    value - value as i64 as f64
 }
 
 #[cfg(test)]
@@ -263,5 +307,37 @@ mod tests {
         let sum: f32 = picture.as_slice().iter().map(|byte| f32::from(*byte)).sum();
         let mean = sum / picture.as_slice().len() as f32;
         assert!((mean - encoded).abs() < 0.02, "{mean} {encoded}");
+    }
+
+    #[test]
+    fn where_there_is_no_light_a_picture_is_as_where_there_is_less() {
+        let size = ImageSize {
+            width: 9,
+            height: 7,
+        };
+        let mut image = RadianceImage::new(size).unwrap();
+        let maps = [
+            ToneMap::Agx,
+            ToneMap::Clamp,
+            ToneMap::Exponential,
+            ToneMap::KhronosNeutral,
+        ];
+        for (tone_map, alpha) in maps
+            .into_iter()
+            .flat_map(|map| [(map, Alpha::Opaque), (map, Alpha::Luminance)])
+        {
+            let display = Display {
+                tone_map,
+                alpha,
+                ..Display::default()
+            };
+            let mut picture = |light: f32| {
+                image.as_mut_slice().fill(light);
+                image.tone_map(&display)
+            };
+            // Below 0 light is none, and is worked out.
+            assert_eq!(picture(0.0), picture(-1.0), "{display:?}");
+            assert_ne!(picture(0.0), picture(0.1), "{display:?}");
+        }
     }
 }

@@ -1,27 +1,26 @@
-//! Encodes images: EXR by the crate exr, which has its attributes, and the others by the crate image.
+//! Encodes images: EXR by the crate exr, which has its attributes, WebP and JPEG by the crate image.
 
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, SmallVec,
     SpecificChannels, Text, Vec2, WritableImage, f16,
 };
-use image::codecs::png::PngEncoder;
+#[cfg(any(feature = "webp", feature = "jpeg"))]
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 
+#[cfg(any(feature = "webp", feature = "jpeg"))]
+use super::DisplayImage;
 use super::display::Film;
-use super::{Alpha, Display, DisplayImage, RadianceImage};
+use super::{Alpha, Display, RadianceImage};
 use crate::output::Sink;
 
 /// Why an encoder failed.
 pub(super) type Fault = Box<dyn std::error::Error + Send + Sync>;
 
-/// What a file says of how it was made: names and values.
-pub(super) type Notes = Vec<(&'static str, String)>;
-
 /// Encodes linear light as `display` has it: its alpha, its background, floats of 16 or 32 bits.
 pub(super) fn exr(
     image: &RadianceImage,
     display: &Display,
-    notes: &Notes,
+    lines: &[String],
     writer: &mut dyn Sink,
 ) -> Result<(), Fault> {
     let size = image.size();
@@ -31,7 +30,7 @@ pub(super) fn exr(
         let index = place.flat_index_for_size(extent);
         film.pixel(index)
     };
-    let attributes = attributes(notes);
+    let attributes = attributes(lines);
     match display.bits {
         Some(16) => {
             let channels = SpecificChannels::rgba(|place: Vec2<usize>| {
@@ -55,7 +54,7 @@ pub(super) fn exr_of_groups(
     image: &RadianceImage,
     groups: &[(String, RadianceImage)],
     display: &Display,
-    notes: &Notes,
+    lines: &[String],
     writer: &mut dyn Sink,
 ) -> Result<(), Fault> {
     let size = image.size();
@@ -93,7 +92,7 @@ pub(super) fn exr_of_groups(
     }
     let extent = Vec2(size.width as usize, size.height as usize);
     let channels = AnyChannels::sort(channels);
-    let layer = Layer::new(extent, attributes(notes), Encoding::default(), channels);
+    let layer = Layer::new(extent, attributes(lines), Encoding::default(), channels);
     Image::from_layer(layer).write().to_buffered(writer)?;
     Ok(())
 }
@@ -103,7 +102,7 @@ fn half(value: f32) -> f16 {
     f16::from_f32(value.clamp(-65504.0, 65504.0))
 }
 
-fn attributes(notes: &Notes) -> LayerAttributes {
+fn attributes(lines: &[String]) -> LayerAttributes {
     let text = |value: &str| {
         // Attributes hold the first 256 characters of Unicode.
         let known = value
@@ -112,20 +111,11 @@ fn attributes(notes: &Notes) -> LayerAttributes {
         Text::new_or_none(known.collect::<String>())
     };
     // One attribute: the crate writes further ones in an order that changes from run to run.
-    let lines: Vec<String> = notes
-        .iter()
-        .map(|(name, value)| format!("{name}: {value}"))
-        .collect();
     LayerAttributes {
         software_name: text(concat!("energywave ", env!("CARGO_PKG_VERSION"))),
         comments: text(&lines.join("\n")).filter(|_| !lines.is_empty()),
         ..LayerAttributes::default()
     }
-}
-
-/// Encodes a picture as PNG.
-pub(super) fn png(picture: &DisplayImage, writer: &mut dyn Sink) -> Result<(), ImageError> {
-    write(picture, PngEncoder::new(writer))
 }
 
 /// Encodes a picture as WebP, lossless.
@@ -149,6 +139,7 @@ pub(super) fn jpeg(
     write(picture, encoder)
 }
 
+#[cfg(any(feature = "webp", feature = "jpeg"))]
 fn write(picture: &DisplayImage, encoder: impl ImageEncoder) -> Result<(), ImageError> {
     let color = match (picture.channels, picture.bits) {
         (3, 8) => ExtendedColorType::Rgb8,

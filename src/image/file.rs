@@ -3,11 +3,17 @@
 use std::io;
 use std::path::Path;
 
-use super::encode::{self, Fault, Notes};
+use super::encode::{self, Fault};
 use super::openexr::{ChannelName, OpenExr};
-use super::{Alpha, Display, DisplayImage, ImageFormat, RadianceImage};
+use super::{Alpha, Display, DisplayImage, ImageFormat, RadianceImage, png_file};
 use crate::error::{Error, Result};
 use crate::output::{Output, Sink};
+
+/// What a file says of how it was made: names and values.
+type Notes = Vec<(&'static str, String)>;
+
+/// What the line of a fingerprint begins with in an EXR's comments.
+const FINGERPRINT: &str = "fingerprint: ";
 
 /// An output that is known to be writable before anything is computed.
 #[derive(Debug)]
@@ -15,6 +21,7 @@ pub struct ImageFile {
     format: ImageFormat,
     output: Output,
     notes: Notes,
+    fingerprint: Option<String>,
 }
 
 impl ImageFile {
@@ -48,6 +55,7 @@ impl ImageFile {
             format,
             output,
             notes: Notes::new(),
+            fingerprint: None,
         }
     }
 
@@ -57,6 +65,29 @@ impl ImageFile {
     pub fn note(mut self, name: &'static str, value: impl Into<String>) -> Self {
         self.notes.push((name, value.into()));
         self
+    }
+
+    /// Writes a text into the file, a PNG or an EXR, by which [`ImageFile::fingerprint_of`] knows it again.
+    #[must_use]
+    pub fn fingerprint(mut self, text: impl Into<String>) -> Self {
+        self.fingerprint = Some(text.into());
+        self
+    }
+
+    /// Returns the text that [`ImageFile::fingerprint`] wrote into a file, if it is there, has one and is whole.
+    #[must_use]
+    pub fn fingerprint_of(path: impl AsRef<Path>) -> Option<String> {
+        let path = path.as_ref();
+        if !path.is_file() {
+            return None; // a pipe has none, and would be waited for
+        }
+        png_file::fingerprint(path).or_else(|| {
+            let comments = OpenExr::open(path).ok()?.comments_of_whole()?;
+            let line = comments
+                .lines()
+                .find_map(|line| line.strip_prefix(FINGERPRINT));
+            line.map(str::to_owned)
+        })
     }
 
     /// Returns the format that it will have.
@@ -76,7 +107,7 @@ impl ImageFile {
             return Err(Error::Unsupported(message.to_owned()));
         }
         self.format.check(&picture.display())?;
-        write_picture(self.format, self.output, picture, None)
+        self.write_checked(picture, None)
     }
 
     /// Encodes the image as `display` has it, tone-mapped if the format is for screens, and puts the file in its place.
@@ -88,21 +119,41 @@ impl ImageFile {
     pub fn write(self, image: &RadianceImage, display: &Display) -> Result<()> {
         self.format.check(display)?;
         if self.format == ImageFormat::Exr {
-            let notes = &self.notes;
+            let lines = self.lines();
             return encoded(self.output, |writer| {
-                encode::exr(image, display, notes, writer)
+                encode::exr(image, display, &lines, writer)
             });
         }
-        write_picture(
-            self.format,
-            self.output,
-            &image.tone_map(display),
-            display.quality,
-        )
+        self.write_checked(&image.tone_map(display), display.quality)
     }
-}
 
-impl ImageFile {
+    /// Returns the lines of an EXR's comments.
+    fn lines(&self) -> Vec<String> {
+        let notes = self
+            .notes
+            .iter()
+            .map(|(name, value)| format!("{name}: {value}"));
+        let fingerprint = self.fingerprint.iter();
+        let fingerprint = fingerprint.map(|text| format!("{FINGERPRINT}{text}"));
+        notes.chain(fingerprint).collect()
+    }
+
+    /// Encodes a picture in a format for screens that holds it.
+    fn write_checked(
+        self,
+        picture: &DisplayImage,
+        #[cfg_attr(not(feature = "jpeg"), allow(unused_variables))] quality: Option<u32>,
+    ) -> Result<()> {
+        let (format, fingerprint) = (self.format, self.fingerprint.as_deref());
+        encoded(self.output, |writer| match format {
+            #[cfg(feature = "webp")]
+            ImageFormat::WebP => Ok(encode::webp(picture, writer)?),
+            #[cfg(feature = "jpeg")]
+            ImageFormat::Jpeg => Ok(encode::jpeg(picture, quality, writer)?),
+            _ => Ok(png_file::write(picture, fingerprint, writer)?),
+        })
+    }
+
     /// Writes an EXR as [`ImageFile::write`] does, with further layers: the light of groups of lights
     /// ([`Scene::of_light_group`](crate::Scene::of_light_group)), in channels such as `rings.R`. They have no alpha and
     /// no background.
@@ -130,30 +181,11 @@ impl ImageFile {
                 )));
             }
         }
-        let notes = &self.notes;
+        let lines = self.lines();
         encoded(self.output, |writer| {
-            encode::exr_of_groups(image, groups, display, notes, writer)
+            encode::exr_of_groups(image, groups, display, &lines, writer)
         })
     }
-}
-
-/// Encodes a picture in a format for screens.
-fn write_picture(
-    format: ImageFormat,
-    output: Output,
-    picture: &DisplayImage,
-    #[cfg_attr(not(feature = "jpeg"), allow(unused_variables))] quality: Option<u32>,
-) -> Result<()> {
-    encoded(output, |writer| {
-        match format {
-            #[cfg(feature = "webp")]
-            ImageFormat::WebP => encode::webp(picture, writer),
-            #[cfg(feature = "jpeg")]
-            ImageFormat::Jpeg => encode::jpeg(picture, quality, writer),
-            _ => encode::png(picture, writer),
-        }
-        .map_err(Fault::from)
-    })
 }
 
 fn encoded(

@@ -1,5 +1,7 @@
 //! Images: depth, linear radiance, the picture made of it, what is behind it, files, and comparison.
 
+#[cfg(feature = "files")]
+mod animation;
 mod background;
 mod bloom;
 mod clip;
@@ -18,15 +20,23 @@ mod exposure;
 #[cfg(feature = "files")]
 mod file;
 #[cfg(feature = "files")]
+mod flipbook;
+#[cfg(feature = "files")]
 mod format;
+#[cfg(feature = "files")]
+mod frame_rate;
 #[cfg(feature = "files")]
 mod openexr;
 #[cfg(feature = "files")]
 mod picture_file;
+#[cfg(feature = "files")]
+mod png_file;
 mod size;
 mod srgb;
 mod tone_map;
 
+#[cfg(feature = "files")]
+pub use animation::{AnimationFile, AnimationFormat, Playback};
 pub use background::{Background, BackgroundImage};
 pub use bloom::Bloom;
 pub(crate) use bloom::{Axis, spread_light};
@@ -39,7 +49,11 @@ pub use exposure::Exposure;
 #[cfg(feature = "files")]
 pub use file::ImageFile;
 #[cfg(feature = "files")]
+pub use flipbook::{Flipbook, FlipbookLayout};
+#[cfg(feature = "files")]
 pub use format::ImageFormat;
+#[cfg(feature = "files")]
+pub use frame_rate::FrameRate;
 #[cfg(feature = "files")]
 pub use openexr::DECODER_THREAD;
 pub use size::ImageSize;

@@ -19,8 +19,14 @@ pub(crate) fn available_bytes() -> Option<u64> {
     Some(available(Path::new("/"))?.bytes)
 }
 
+/// Fewer bytes are not asked for: looking takes longer than making a frame of a small scene.
+const LITTLE: u64 = 1 << 20;
+
 /// Says, where so many bytes are not to be had, how many are, and what limits them.
 pub(crate) fn shortage(needed: u64) -> Option<String> {
+    if needed < LITTLE {
+        return None;
+    }
     let available = available(Path::new("/"))?;
     (needed > available.bytes).then(|| available.too_little_for(needed))
 }

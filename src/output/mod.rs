@@ -5,16 +5,18 @@
 //! no plain file (a pipe, a device, standard output) is written through; so is a file that must stay the one it is,
 //! because it has other names, another owner, or is mounted.
 
+mod stream;
 mod text;
 #[cfg(unix)]
 mod unix;
 
 use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, BufWriter, Cursor, Seek, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 
+use stream::{stream, write_through};
 pub use text::TextFile;
 
 /// What an encoder writes to.
@@ -73,6 +75,23 @@ impl Output {
             path: PathBuf::from("standard output"),
             place: Place::Stdout,
         }
+    }
+
+    /// Lets `encode` write everything as it comes: to what is no file at once, so that it must not go back.
+    ///
+    /// # Errors
+    /// As [`Output::write_with`].
+    pub(crate) fn stream_with(
+        self,
+        encode: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+    ) -> Result<()> {
+        let written = match self.place {
+            Place::Stdout => stream(&mut io::stdout().lock(), encode),
+            Place::Stderr => stream(&mut io::stderr().lock(), encode),
+            Place::Stream(mut file) => stream(&mut file, encode),
+            Place::Old(_) | Place::Aside(_) => return self.write_with(encode),
+        };
+        written.map_err(|error| Error::output(&self.path, error.to_string()).caused_by(error))
     }
 
     /// Lets `encode` write everything.
@@ -314,38 +333,6 @@ fn write_file(file: &File, encode: impl FnOnce(&mut dyn Sink) -> io::Result<()>)
     writer.flush()
 }
 
-/// Writes to what cannot go back: all at once.
-fn write_through(
-    stream: &mut dyn Write,
-    encode: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
-) -> io::Result<()> {
-    let mut bytes = Memory(Cursor::new(Vec::new()));
-    encode(&mut bytes)?;
-    stream.write_all(bytes.0.get_ref())?;
-    stream.flush()
-}
-
-/// Bytes in memory, which fails where there is none left.
-struct Memory(Cursor<Vec<u8>>);
-
-impl Write for Memory {
-    fn write(&mut self, data: &[u8]) -> io::Result<usize> {
-        let reserved = self.0.get_mut().try_reserve(data.len());
-        reserved.map_err(|_| io::ErrorKind::OutOfMemory)?;
-        self.0.write(data)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Seek for Memory {
-    fn seek(&mut self, place: io::SeekFrom) -> io::Result<u64> {
-        self.0.seek(place)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -393,12 +380,5 @@ mod tests {
         assert!(error.to_string().contains("nothing was written"), "{error}");
         assert_eq!(fs::read(&path).unwrap(), b"all is new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn a_stream_gets_everything_in_order() {
-        let mut stream = Vec::new();
-        write_through(&mut stream, write).unwrap();
-        assert_eq!(stream, b"all is new");
     }
 }

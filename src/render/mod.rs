@@ -7,6 +7,7 @@ mod host_depth;
 mod layers;
 mod moments;
 mod one;
+mod over;
 mod referenced;
 mod several;
 mod shares;

@@ -26,6 +26,11 @@ impl Scene {
     /// source that says by its peak how bright it is.
     #[must_use]
     pub fn fitting_exposure(&self) -> f64 {
+        self.exposure_of_brightest().unwrap_or(0.0)
+    }
+
+    /// Returns it where the brightest source decides: not where there is a peak or a decay, or no light.
+    pub(super) fn exposure_of_brightest(&self) -> Option<f64> {
         let reduction = self.integration.reduction;
         let height = self.camera.height_at(self.focus());
         let mut brightest: f64 = 0.0;
@@ -42,8 +47,8 @@ impl Scene {
             Measure::Parameter => reduction.of(self.ray_length()),
         };
         match measure / brightest {
-            times if has_peak || !times.is_normal() => 0.0,
-            times => times.log2().clamp(-100.0, 100.0),
+            times if has_peak || !times.is_normal() => None,
+            times => Some(times.log2().clamp(-100.0, 100.0)),
         }
     }
 }

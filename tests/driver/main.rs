@@ -8,6 +8,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod animation; // counts what frames of a scene that moves make on the device
 mod bloom_faults; // lets every call of a bloom fail in turn
 mod faults; // lets every call of a frame fail in turn
 mod host_depths; // gives a frame a host's depths that do not fit, and lets what reads them fail

@@ -4,6 +4,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+#[cfg(unix)] // as cli
+mod animate; // draws frames of scenes that move
+#[cfg(unix)] // as animate
+mod bad_animations; // has frames refused that cannot be
 mod bad_displays; // has displays refused that no file can hold
 mod bad_looks; // has every fault of layers named with its place
 mod bad_scenes;
@@ -36,6 +40,8 @@ mod scene_files; // reads again what was written
 mod speaks; // says what it drew, and is quiet
 mod tracks; // draws scenes at times
 mod verify; // checks known rays, past sources and past whole scenes
+#[cfg(unix)] // as animate, whose scene they draw
+mod videos; // lays all frames into one file
 mod warnings; // is told what a scene was hardly meant to say
 #[cfg(unix)] // as cli
 mod watch; // draws scenes again that are saved

@@ -9,7 +9,8 @@ use energywave::{Device, Renderer, Scene};
 
 const CAMERA: &str = "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n";
 
-const MOVING: &str = "[camera]\neye = { times = [0, 4], values = [[0, -4, 2], [0, -8, 4]] }\ntarget = [0, 0, 0]\n\
+const MOVING: &str = "[display]\nexposure = 0\n\
+    [camera]\neye = { times = [0, 4], values = [[0, -4, 2], [0, -8, 4]] }\ntarget = [0, 0, 0]\n\
     [image]\nwidth = 6\nheight = 4\n[[sphere]]\ncoefficient = 0.01\n[[torus]]\nradius = 0.1\nmajor_radius = 0.5\n\
     [[torus]]\ncolor = { times = [0, 2], values = [\"#ff0000\", [0.5, 0, 1]] }\nmajor_radius.times = [0, 1, 2]\n\
     major_radius.values = [1, 2, 4]\nmajor_radius.interpolation = \"step\"\n[torus.coefficient]\ntimes = [1, 3]\n\
@@ -18,7 +19,8 @@ const MOVING: &str = "[camera]\neye = { times = [0, 4], values = [[0, -4, 2], [0
     angle = { times = [0, 4], values = [0, 360], loop = \"repeat\" }\n[[group.sphere]]\ncenter = [1, 0, 0]\n";
 
 /// The same at 1 s, written out.
-const AT_ONE: &str = "[camera]\neye = [0, -5, 2.5]\ntarget = [0, 0, 0]\n[image]\nwidth = 6\nheight = 4\n\
+const AT_ONE: &str = "[display]\nexposure = 0\n\
+    [camera]\neye = [0, -5, 2.5]\ntarget = [0, 0, 0]\n[image]\nwidth = 6\nheight = 4\n\
     [[sphere]]\ncoefficient = 0.01\n[[torus]]\nradius = 0.1\nmajor_radius = 0.5\n[[torus]]\ncolor = [0.75, 0, 0.5]\n\
     major_radius = 2\ncoefficient = 0.25\n[[torus.layers]]\nradius = 0.125\n[[torus.layers]]\nreach = 2\n\
     [[group]]\n[group.rotate]\naxis = [0, 0, 1]\nangle = 90\n[[group.sphere]]\ncenter = [1, 0, 0]\n";
@@ -236,4 +238,24 @@ fn groups_of_lights_are_blurred_each_and_files_are_read_once() {
         Ok(())
     });
     assert_eq!(given.unwrap(), moving.at(1.0).unwrap());
+}
+
+#[test]
+fn one_exposure_fits_the_brightest_moment_of_a_scene_that_names_none() {
+    let light = |coefficient: &str| {
+        format!("{CAMERA}[[torus]]\nmajor_radius = 0.5\ncoefficient = {coefficient}\n")
+    };
+    let stops = |scene: &Scene| scene.display.exposure;
+    let still = |coefficient: &str| stops(&Scene::from_toml(&light(coefficient)).unwrap());
+    let moving =
+        AnimatedScene::from_toml(light("{ times = [0, 1, 2], values = [0, 4, 0.5] }")).unwrap();
+    for time in [0.0, 0.5, 1.0, 1.9, 7.0] {
+        assert_eq!(stops(&moving.at(time).unwrap()), still("4"), "{time}");
+    }
+    assert_ne!(still("4"), still("0.5"));
+    let named = light("{ times = [0, 1], values = [0, 4] }") + "[display]\nexposure = 1.5\n";
+    assert_eq!(
+        stops(&AnimatedScene::from_toml(named).unwrap().at(0.5).unwrap()),
+        1.5.into()
+    );
 }

@@ -16,7 +16,8 @@ use clap::Args;
 use energywave::image::{ImageFile, ImageFormat};
 use energywave::{Error, ErrorKind};
 
-use super::args::{DeviceArgument, Overrides, rate, time};
+use super::args::{DeviceArgument, rate, time};
+use super::overrides::Overrides;
 use super::progress::{catch_interrupts, was_interrupted};
 use super::render::{drawn, noted};
 use super::{Outcome, names, note, tell};

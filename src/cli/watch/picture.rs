@@ -101,7 +101,7 @@ impl Pictures {
 
     /// Reads the file; what was read before stays where it has a fault.
     pub fn read(&mut self) -> Result<(), Error> {
-        self.arguments.overrides.opened_depth.take();
+        self.arguments.overrides.opened_depth.forget();
         let moving = AnimatedScene::from_file(&self.arguments.scene)?;
         self.changes.add(&moving.files())?;
         self.moving = Some(moving);

@@ -75,6 +75,16 @@ pub(super) fn decode(file: &OpenExr, part: usize, channels: &[usize]) -> Outcome
     Ok(planes)
 }
 
+/// Checks that all chunks of a part are in the file.
+pub(super) fn check_all(file: &OpenExr, part: usize) -> Outcome<()> {
+    for place in table(file, part)? {
+        if place == 0 || chunk(file, part, place)?.is_none() {
+            return Err("never finished: a chunk of pixels is missing".to_owned());
+        }
+    }
+    Ok(())
+}
+
 /// Returns where the chunks of a part are, bytes; 0 for one that is not there.
 fn table(file: &OpenExr, part: usize) -> Outcome<impl Iterator<Item = u64>> {
     let cut = || "cut off: it ends in its table of chunks".to_owned();

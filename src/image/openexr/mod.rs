@@ -124,6 +124,19 @@ impl OpenExr {
         }
     }
 
+    /// Returns what its first part says in comments, if all chunks of that are there.
+    pub(super) fn comments_of_whole(&self) -> Option<String> {
+        let comments = self
+            .meta
+            .headers
+            .first()?
+            .own_attributes
+            .comments
+            .as_ref()?;
+        let comments = text(comments.as_slice());
+        guard::guarded(|| chunks::check_all(self, 0).map(|()| comments)).ok()
+    }
+
     /// Returns all channels, by parts.
     pub(super) fn channels(&self) -> Vec<ChannelName> {
         let mut all = Vec::new();

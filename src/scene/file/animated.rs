@@ -153,6 +153,7 @@ impl AnimatedScene {
             text: Cow::Borrowed(""),
             name: None,
             folder: PathBuf::new(),
+            fitting: OnceLock::new(),
         };
         Ok(Self {
             document: Document { file, motion },

@@ -53,6 +53,11 @@ keys! { pub(in crate::scene) DEPTH_KEYS;
 }
 
 impl DepthTable {
+    /// Returns its file, from the folder of the scene.
+    pub(super) fn file(&self) -> &Path {
+        &self.file
+    }
+
     /// Names the file that an image was read from; `None` for one that was made in code.
     pub(super) fn of(image: &DepthImage) -> Option<Self> {
         let (file, options) = (image.file()?, image.options()?);
@@ -65,11 +70,6 @@ impl DepthTable {
             projection: options.clip.map(|clip| clip.projection()),
             range: options.clip.map(|clip| clip.range()),
         })
-    }
-
-    /// Returns its file, from the folder of the scene.
-    pub(super) fn file(&self) -> &Path {
-        &self.file
     }
 
     /// Reads the image of a scene; its path is from `folder`.

@@ -17,7 +17,7 @@ use crate::scene::colors::read_color;
 #[derive(Debug, Clone, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct DisplayTable {
-    exposure: Option<ExposureKey>,
+    pub(super) exposure: Option<ExposureKey>,
     tone_map: ToneMap,
     #[serde(skip_serializing_if = "is_default")]
     alpha: Alpha,
@@ -127,7 +127,7 @@ impl DisplayTable {
 
 /// Stops, or "auto".
 #[derive(Debug, Clone)]
-struct ExposureKey(Exposure);
+pub(super) struct ExposureKey(pub(super) Exposure);
 
 impl<'de> Deserialize<'de> for ExposureKey {
     fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {

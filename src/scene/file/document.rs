@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use super::moving::Moving;
 use super::pieces::source_key;
@@ -30,6 +31,8 @@ pub(super) struct Motion<'a> {
     pub name: Option<PathBuf>,
     /// Where files are that it names.
     pub folder: PathBuf,
+    /// The exposure of all times, where the file names none.
+    pub fitting: OnceLock<f64>,
 }
 
 impl<'a> Document<'a> {
@@ -55,6 +58,7 @@ impl<'a> Document<'a> {
             text,
             name: name.map(Path::to_owned),
             folder: folder.to_owned(),
+            fitting: OnceLock::new(),
         };
         Ok(Self { file, motion })
     }
@@ -81,12 +85,10 @@ impl Motion<'_> {
             let message = format!("{time} is no time; it is a finite number of seconds");
             return Err(SceneError::value("", message).into());
         }
-        let period = file.period();
-        let moment = Moment {
-            time: period.map_or(time, |period| wrapped(time, period)),
-            period,
-        };
+        let moment = self.moment(&file, time);
+        let exposure = self.exposure(&file);
         self.go_to(&mut file, moment)?;
+        file.display.exposure = file.display.exposure.or(exposure);
         match make(file) {
             Ok(made) => Ok((made, moment)),
             Err(Error::Scene(fault)) => Err(self.placed(fault, moment).into()),
@@ -94,8 +96,17 @@ impl Motion<'_> {
         }
     }
 
+    /// Returns when a time is in the scene's loop.
+    pub(super) fn moment(&self, file: &SceneFile, time: f64) -> Moment {
+        let period = file.period();
+        Moment {
+            time: period.map_or(time, |period| wrapped(time, period)),
+            period,
+        }
+    }
+
     /// Reads again what changes.
-    fn go_to(&self, file: &mut SceneFile, moment: Moment) -> Result<()> {
+    pub(super) fn go_to(&self, file: &mut SceneFile, moment: Moment) -> Result<()> {
         let moving = &self.moving;
         if moving.is_empty() || moment.time == 0.0 {
             return Ok(());

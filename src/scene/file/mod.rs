@@ -193,6 +193,13 @@ impl SceneFile {
         self.time = other.time;
     }
 
+    /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
+    fn exposure_of_brightest(mut self) -> Option<f64> {
+        let mut scene = self.scene();
+        Groups::add_to(&mut scene, std::mem::take(&mut self.group)).ok()?;
+        scene.exposure_of_brightest()
+    }
+
     /// Checks the scene, lets `adjust` change it, reads a depth image and a background unless it has given them, and
     /// checks it again.
     fn into_scene(self, folder: &Path, adjust: Adjust<'_>) -> Result<Read> {

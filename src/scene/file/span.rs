@@ -1,8 +1,9 @@
-//! How long a scene moves, and what it is made of.
+//! How long a scene moves, what it is made of, and the exposure that fits all of its times.
 
 use std::path::PathBuf;
 
 use super::animated::AnimatedScene;
+use super::display::ExposureKey;
 use super::document::Motion;
 use super::*;
 use crate::scene::Track;
@@ -17,6 +18,12 @@ pub struct SceneSpan {
     pub loops: bool,
 }
 
+/// At so many times, evenly from the first to the last, the exposure is to fit that a moving scene gets.
+const EXPOSED_TIMES: u32 = 33;
+
+/// How long noise is looked at that has no end, seconds.
+const NOISE_SECONDS: f64 = 1.0;
+
 impl AnimatedScene {
     /// Returns how long it moves: a turn of its loop; of a scene without one, a cycle if all tracks have the same, else
     /// until the last key of a track that ends, or the end of a first cycle. `None` if it does not move, or if all that
@@ -25,6 +32,12 @@ impl AnimatedScene {
     pub fn span(&self) -> Option<SceneSpan> {
         let Document { file, motion } = &self.document;
         motion.span(file)
+    }
+
+    /// Returns the text that it was read from; empty if it was made in code.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.document.motion.text
     }
 
     /// Returns the files that it names: a depth image, and a background.
@@ -70,5 +83,28 @@ impl Motion<'_> {
             seconds,
             loops: false,
         })
+    }
+
+    /// Returns the exposure of a scene that moves and names none: the one that fits its brightest moment, at all times,
+    /// so that no frame is overexposed, and light that swells or fades is not levelled out.
+    pub(super) fn exposure(&self, file: &SceneFile) -> Option<ExposureKey> {
+        if self.moving.is_empty() || file.display.exposure.is_some() {
+            return None;
+        }
+        let stops = *self.fitting.get_or_init(|| self.fitting_exposure(file));
+        Some(ExposureKey(stops.into()))
+    }
+
+    fn fitting_exposure(&self, file: &SceneFile) -> f64 {
+        let seconds = self.span(file).map_or(NOISE_SECONDS, |span| span.seconds);
+        let times =
+            (0..EXPOSED_TIMES).map(|step| seconds * f64::from(step) / f64::from(EXPOSED_TIMES - 1));
+        let fitting = times.filter_map(|time| {
+            let (mut file, moment) = (file.clone(), self.moment(file, time));
+            // What is wrong at a time is told to who draws it.
+            self.go_to(&mut file, moment).ok()?;
+            file.exposure_of_brightest()
+        });
+        fitting.reduce(f64::min).unwrap_or(0.0)
     }
 }
