@@ -25,10 +25,8 @@
 #define CLOSE_REACH 24.0f
 #define FAR_REACH 96.0f
 #define RIM 0.25f
-// So far from a core its bends and ends are seen.
+// So far from a core its bends and ends are seen; farther off an end is a point.
 #define CLOSE 3.0f
-// Farther off, an end that lies so far along, of its distance, squared, is a point.
-#define END_ALONG 0.01f
 // A pixel is cut in halves or quarters a side if its light may be off by so much of itself; of by how much a bend
 // changes its mean, a part stays.
 #ifndef HALVED_FROM // a test spoils it
@@ -41,6 +39,8 @@
 #define LEAST_PASS 0.4f
 #define RIM_PASS 0.5f
 #define SECOND_PASS 0.5f
+// More than so many times what a ray gets is no mean of smooth light: a place has seen another part of the core.
+#define MOST_SMOOTH 2.0f
 
 // A square of the image, in pixels: a ray's pixel, or a part of it.
 typedef struct {
@@ -90,10 +90,9 @@ INLINE CoreSeen core_seen(const View *const view, const Square *const square, co
     const floatv scale = square->side * fma(ray->stretch, closest->s, splat(1.0f));
     const float3v right = scale3(uniform3(view->column_step), scale), below = scale3(uniform3(view->row_step), scale);
     const float3v across_line = cross3(closest->along, ray->span), beside = closest->beside;
-    const floatv along = dot3(unit_along(cross3(across_line, ray->span)), beside), apart2 = dot3(beside, beside);
-    const intv is_end = (along * along > END_ALONG * apart2) & (apart2 > CLOSE * CLOSE * dot3(right, right));
+    const intv is_far = dot3(beside, beside) > CLOSE * CLOSE * dot3(right, right);
     CoreSeen core;
-    core.is_point = (dot3(across_line, across_line) <= 0.0f) | is_end;
+    core.is_point = (dot3(across_line, across_line) <= 0.0f) | (closest->is_end & is_far);
     const float3v toward = select3(across_line, beside, core.is_point);
     const float3v axis = select3(toward, right, dot3(toward, toward) < 1e-36f);
     core.across_axis = unit_along(axis);
@@ -219,6 +218,7 @@ INLINE Footprint footprint_of(const Square *const square, const Surroundings *co
 #endif
     const floatv at_pass = core_across(light, pass * pass) - lost_across(light, pass * pass);
     floatv ratio = mean * inverse(at_pass);
+    ratio = select(ratio, min(ratio, MOST_SMOOTH), distance > SMOOTH_FROM);
 #ifdef SHAPES
     if (light->has_end) {
         const floatv at_rim = mean_at_rim(reach - distance, core->right, core->below, reach - pass);

@@ -129,6 +129,7 @@ Closest beam_closest(const Ray *const ray, const Sources *const sources, const u
     const Closest to_tip = closest_to_point(ray, fine3(beam->tip, beam->tip_rest), path.to_tip.nearest);
     Closest closest = select_closest(to_tip, to_line, ahead >= 0.0f);
     closest.along = to_line.along;
+    closest.is_end = ahead < 0.0f;
     closest.light = splat(path.has_taper || path.sphere != 0.0f ? 0.0f : path.line);
     return closest;
 }

@@ -80,8 +80,9 @@ Closest curve_closest(const Ray *const ray, const Sources *const sources, const 
     const float3v along = uniform3(curve->along), across = uniform3(curve->across), normal = uniform3(curve->normal);
     const float3v in_plane = fma3(across, offset.across, scale3(along, offset.along));
     const float3v tangent = fma3(across, curve_velocity_across(path, x), scale3(along, splat(path->velocity_along)));
-    const Closest closest = {s, scale3(fma3(normal, point.normal, in_plane), splat(-0.5f)), tangent, splat(0.0f),
-                             SERIES_LENGTH(path) ? curve_intensity(path, x) : splat(1.0f)};
+    const Closest closest = {
+        s,           scale3(fma3(normal, point.normal, in_plane), splat(-0.5f)),   tangent,
+        splat(0.0f), SERIES_LENGTH(path) ? curve_intensity(path, x) : splat(1.0f), fabs(x) >= 0.5f};
     return closest;
 }
 #endif

@@ -174,6 +174,7 @@ Closest segment_closest(const Ray *const ray, const Sources *const sources, cons
     const Closest to_last = closest_to_point(ray, fine3(segment->to, segment->to_rest), path.to_last.nearest);
     Closest closest = select_closest(select_closest(to_line, to_first, is_before), to_last, is_beyond);
     closest.along = to_line.along;
+    closest.is_end = is_before | is_beyond;
     return closest;
 }
 #endif

@@ -357,8 +357,12 @@ Closest torus_closest(const Ray *const ray, const Sources *const sources, const 
     const float3v at = from_fine3(from_center);
     const float3v in_plane = fma3(axis, -dot3(at, axis), at);
     const float3v outward = scale3(in_plane, 0.5f * twice_inverse_sqrt_(max(dot3(in_plane, in_plane), 1e-36f)));
-    const Closest closest = {s[0], fma3(outward, splat(torus->major_radius), scale3(at, splat(-1.0f))),
-                             cross3(axis, outward), splat(0.0f), splat(1.0f)};
+    const Closest closest = {s[0],
+                             fma3(outward, splat(torus->major_radius), scale3(at, splat(-1.0f))),
+                             cross3(axis, outward),
+                             splat(0.0f),
+                             splat(1.0f),
+                             (intv)(0)};
     return closest;
 }
 #endif
