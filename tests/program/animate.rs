@@ -92,6 +92,31 @@ fn a_frame_is_what_render_draws_at_its_time_to_the_bit() {
 }
 
 #[test]
+fn a_frame_is_blurred_as_that_of_render_is() {
+    let folder = Folder::new();
+    let blurred = "[time]\nshutter = 0.5\n[integration]\ntolerance = 0.01\nantialias = \"none\"\n";
+    scene(&folder, "a.toml", blurred);
+    let frames = ["-o", "f.exr", "--frames", "3..3", "--fps", "4"];
+    expect(&animate(&folder, &frames), 0, "");
+    let draw = |name: &str, rate: &[&str]| {
+        let render = [
+            "render",
+            "a.toml",
+            "--device",
+            "reference",
+            "-o",
+            name,
+            "--time",
+            "0.75",
+        ];
+        expect(&folder.run(&[&render, rate].concat()), 0, "");
+        exr(&folder, name)
+    };
+    assert_eq!(exr(&folder, "f.0003.exr"), draw("r.exr", &["--fps", "4"]));
+    assert_ne!(exr(&folder, "f.0003.exr"), draw("m.exr", &[]));
+}
+
+#[test]
 fn whole_frames_of_the_same_scene_are_drawn_once() {
     let folder = Folder::new();
     let at = |name: &str| folder.path().join(name);
