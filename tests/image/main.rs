@@ -20,6 +20,7 @@ mod exact; // holds the method `exact` to every tolerance
 mod fading; // fades light by every power, and absorbs it
 mod fading_forms; // holds the reference to closed forms of points and lines that fade
 mod figures; // draws every scene by every method in the form of the device
+mod flicker; // pans over presets by tenths of a pixel, and reads the animations
 mod footprint; // compares pixels with the means of many rays
 mod hard_scenes; // takes the method `exact` through cores, along them, and to extreme numbers
 mod images; // bounds the worst pixel of the Simpson rule

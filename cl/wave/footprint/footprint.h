@@ -266,7 +266,7 @@ INLINE SquareLight light_of_square(const Footprint *const footprint, const float
     return seen;
 }
 
-// Returns one of the squares that a pixel is cut into, so many a side.
+// Returns one of the squares that a pixel is cut into, so many a side; 1 is the pixel.
 INLINE Square part_of_pixel(const uint number, const uint cuts) {
     const float side = 1.0f / (float)cuts;
     const Square part = {fma((float)(number % cuts) + 0.5f, side, -0.5f),
@@ -274,7 +274,7 @@ INLINE Square part_of_pixel(const uint number, const uint cuts) {
     return part;
 }
 
-// Returns into how many squares a side pixels are cut; 0: they are not.
-INLINE uint cuts_for(const floatv doubt) {
-    return any_lane(doubt > QUARTERED_FROM) ? 4u : any_lane(doubt > HALVED_FROM) ? 2u : 0u;
+// Returns where a pixel is cut into 2 squares a side, and no more.
+INLINE intv is_halved(const floatv doubt) {
+    return (doubt > HALVED_FROM) & (doubt <= QUARTERED_FROM);
 }

@@ -43,20 +43,20 @@ INLINE SquareLight KIND_through(const View *const view, const Ray *const ray, co
 
 PER_RAY floatv KIND_seen(const View *const view, const Ray *const ray, const Sources *const sources, const uint index,
                          const Quadrature *const quadrature) {
-    Square square = {0.0f, 0.0f, 1.0f};
-    SquareLight whole;
-    floatv sum = splat(0.0f);
-    uint cuts = 0; // the pixel as it is, and then so many squares a side
-    for (uint k = 0; k <= cuts * cuts; ++k) {
-        if (k > 0)
-            square = part_of_pixel(k - 1u, cuts);
-        const SquareLight seen = KIND_through(view, ray, &square, sources, index, quadrature);
-        sum = k > 0 ? sum + seen.light : sum;
-        if (k == 0) {
-            whole = seen;
-            cuts = cuts_for(whole.doubt);
+    floatv light = splat(0.0f), doubt = splat(0.0f);
+    // The pixel as it is, then where it is in doubt by 2 and by 4 squares a side: in every lane by its own.
+    for (uint cuts = 1; cuts <= 4; cuts *= 2) {
+        const intv is_cut = cuts == 1 ? (intv)(-1) : cuts == 2 ? is_halved(doubt) : doubt > QUARTERED_FROM;
+        if (!any_lane(is_cut))
+            continue;
+        floatv sum = splat(0.0f);
+        for (uint k = 0; k < cuts * cuts; ++k) {
+            const Square square = part_of_pixel(k, cuts);
+            const SquareLight seen = KIND_through(view, ray, &square, sources, index, quadrature);
+            doubt = cuts == 1 ? seen.doubt : doubt;
+            sum += seen.light;
         }
+        light = select(light, sum * (1.0f / (float)(cuts * cuts)), is_cut);
     }
-    return cuts == 0 ? whole.light
-                     : select(whole.light, sum * (1.0f / (float)(cuts * cuts)), whole.doubt > HALVED_FROM);
+    return light;
 }
