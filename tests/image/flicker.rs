@@ -3,7 +3,7 @@
 
 use crate::common::{device, renderer, sampled};
 use energywave::image::ImageSize;
-use energywave::scene::{AnimatedScene, Method, Preset, Sampling};
+use energywave::scene::{AnimatedScene, Antialias, Method, Preset, Sampling};
 use energywave::{RadianceImage, Scene};
 use glam::DVec2;
 
@@ -21,8 +21,8 @@ fn pan(name: &str) -> Vec<Scene> {
     let preset = Preset::ALL.iter().find(|preset| preset.name == name);
     let mut scene = Scene::from_toml(preset.unwrap().text).unwrap();
     scene.image = ImageSize {
-        width: 96,
-        height: 54,
+        width: 240,
+        height: 135,
     };
     scene.integration.method = Method::exact(1e-3);
     scene.display.bloom = None;
@@ -78,7 +78,20 @@ fn what_a_camera_pans_over_neither_pops_nor_flickers() {
             pop(&tiles, &pixels)
         );
         assert!(change(&tiles) < MOST_CHANGE, "{name}: {}", change(&tiles));
+        let coarse = frames.iter().cloned().map(|mut frame| {
+            frame.integration.method = Method::exact(1e-1);
+            frame
+        });
+        let coarse = draw(&coarse.collect::<Vec<_>>(), Sampling::Tiles, "");
+        // Of the other hardly anything is smooth.
+        assert!(pop(&coarse, &pixels) > MOST_POP || name == "nova", "{name}");
     }
+    let rays = pan("nova").into_iter().map(|mut frame| {
+        frame.integration.antialias = Antialias::None;
+        frame
+    });
+    let rays = draw(&rays.collect::<Vec<_>>(), Sampling::Tiles, "");
+    assert!(change(&rays) > MOST_CHANGE, "{}", change(&rays));
 }
 
 #[test]
