@@ -4,7 +4,7 @@
 
 // For functions that run once a sample: PoCL 3.1 leaves their calls in place, which costs a curve 15 % of its time.
 #ifndef INLINE
-#define INLINE __attribute__((always_inline))
+#define INLINE static __attribute__((always_inline))
 #endif
 
 // For what is long, taken in several places, and not once a sample: copies cost compilers half their time and GPUs

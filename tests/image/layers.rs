@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::common::{self, difference, meets, renderer};
 
-const SIZE: u32 = 48;
+const SIZE: u32 = 32;
 
 /// A white core, a coloured halo that ends, and one that takes its profile from its source.
 fn layers() -> Vec<Layer> {

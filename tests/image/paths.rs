@@ -235,7 +235,7 @@ fn images_by_pixels_and_by_tiles_meet_the_tolerance() {
     {
         let mut scene = scene_of(path(shape, k == 1, Profile::InverseSquare));
         scene.integration.method = Method::exact(1e-3);
-        scene.image.width = 72;
+        scene.image.width = 48;
         scene.paths[0].flatness = Some(1e-6);
         if k == 0 {
             (scene.paths[0].radius, scene.paths[0].reach) = (0.02, Some(0.9));
