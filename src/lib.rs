@@ -60,6 +60,7 @@ mod opencl;
 mod output;
 #[cfg(feature = "papers")]
 pub mod papers;
+pub mod particle;
 pub mod reference;
 mod render;
 pub mod scene;

@@ -60,11 +60,12 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 10] = [
+const LAYERS: [(&str, &[&str]); 11] = [
     ("image", &[]),
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
     ("scene", &["image"]),
+    ("particle", &["scene"]),
     ("reference", &["image", "scene"]),
     // The self-test compares with the reference.
     ("wave", &["image", "opencl", "scene", "reference"]),

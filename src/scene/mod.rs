@@ -39,6 +39,7 @@ mod preset;
 mod random;
 mod ray;
 mod reduction;
+mod simulation;
 mod source;
 mod stamp;
 mod track;
@@ -63,6 +64,11 @@ pub use list::List;
 #[cfg(feature = "files")]
 pub use preset::Preset;
 pub use ray::{Ray, ViewPlane};
+pub(crate) use simulation::LAST_FRAME;
+pub use simulation::{
+    Acceleration, Collider, ColliderShape, ControlPoint, EmittedWave, Mixture, ParticleShape,
+    Response, Signs, SimulationSettings, Varied, Varying,
+};
 pub use source::*;
 pub(crate) use stamp::SourcesStamp;
 pub use track::{Interpolation, Track, TrackLoop, TrackNoise, TrackValue};
@@ -93,6 +99,12 @@ macro_rules! define_scene {
             /// times as many depths across and down: pixels at the edges of things are then the mean of the light
             /// before each surface.
             pub depth: Option<DepthImage>,
+            /// How waves of particles are simulated; `None`: by the defaults.
+            pub simulation: Option<SimulationSettings>,
+            /// Waves of particles, which [`crate::particle::Simulation`] moves.
+            pub waves: List<EmittedWave>,
+            /// What they hit.
+            pub colliders: List<Collider>,
             $($(#[$doc])* pub $list: List<$Type>,)*
         }
 
@@ -108,6 +120,9 @@ macro_rules! define_scene {
                     integration: Integration::default(),
                     display: Display::default(),
                     depth: None,
+                    simulation: None,
+                    waves: List::new(),
+                    colliders: List::new(),
                     $($list: List::new(),)*
                 }
             }

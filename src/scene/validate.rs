@@ -59,6 +59,7 @@ impl Scene {
         check_display(&self.display, self.image).map_err(of("display"))?;
         self.check_depth().map_err(of(""))?;
         self.check_reduction()?;
+        self.check_simulation()?;
         let brightness = self.brightness();
         let of_line = brightness.most / brightness.least_distance;
         if of_line > BRIGHTEST {

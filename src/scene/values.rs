@@ -35,9 +35,14 @@ impl Fault {
     }
 
     /// Says what is wrong.
-    #[cfg(feature = "files")]
     pub(super) fn message(&self) -> &str {
         &self.message
+    }
+
+    /// Moves the fault into a table of its table, such as `control[1]`.
+    pub(super) fn within(self, table: &str) -> Self {
+        let key = format!("{table}.{}", self.key);
+        self.at(key.into())
     }
 
     /// Moves the fault to another key.
@@ -49,6 +54,7 @@ impl Fault {
     pub(super) fn of(self, table: &str) -> SceneError {
         match table {
             "" => SceneError::value(self.key, self.message),
+            table if self.key.is_empty() => SceneError::value(table, self.message),
             table => SceneError::value(format!("{table}.{}", self.key), self.message),
         }
     }

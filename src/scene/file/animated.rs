@@ -186,10 +186,10 @@ impl AnimatedScene {
         }
     }
 
-    /// Returns whether it has a track.
+    /// Returns whether it has a track, or waves of particles that are shown as they are at its time.
     #[must_use]
     pub fn is_animated(&self) -> bool {
-        !self.document.motion.moving.is_empty()
+        !self.document.motion.moving.is_empty() || self.document.file.plays()
     }
 
     /// Returns after how many seconds it begins again; `None` if it does not say.

@@ -88,6 +88,7 @@ impl Motion<'_> {
         let moment = self.moment(&file, time);
         let exposure = self.exposure(&file);
         self.go_to(&mut file, moment)?;
+        file.play(moment.time);
         file.display.exposure = file.display.exposure.or(exposure);
         match make(file) {
             Ok(made) => Ok((made, moment)),

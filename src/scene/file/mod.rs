@@ -27,6 +27,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::kinds::for_each_kind;
+use super::simulation::ColliderTable;
 use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
@@ -45,7 +46,6 @@ use scan::UNIT_COUNT;
 pub use span::SceneSpan;
 pub(super) use time::TIME_KEYS;
 use time::TimeTable;
-pub(super) use tracks::TRACK_KEYS;
 
 /// Changes a scene between its reading and its check.
 type Adjust<'a> = &'a mut dyn FnMut(&mut Scene, &MethodKeys) -> Result<()>;
@@ -74,6 +74,12 @@ macro_rules! define_scene_file {
             depth: Option<DepthTable>,
             #[serde(default, skip_serializing)]
             time: TimeTable,
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            simulation: Option<SimulationSettings>,
+            #[serde(default, skip_serializing_if = "is_empty")]
+            wave: List<EmittedWave>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            collider: Vec<ColliderTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
             #[serde(default, skip_serializing)]
             group: Vec<GroupTable>,
@@ -99,6 +105,9 @@ macro_rules! define_scene_file {
                     integration: self.integration.integration(),
                     display: self.display.display(),
                     depth: None,
+                    simulation: self.simulation,
+                    waves: std::mem::take(&mut self.wave),
+                    colliders: self.colliders(),
                     $($list: std::mem::take(&mut self.$kind),)*
                 }
             }
@@ -155,6 +164,9 @@ macro_rules! define_scene_file {
                     display,
                     depth,
                     time: TimeTable::default(),
+                    simulation: scene.simulation,
+                    wave: scene.waves.clone(),
+                    collider: scene.colliders.iter().map(ColliderTable::of).collect(),
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
                 }
@@ -191,6 +203,38 @@ impl SceneFile {
         self.display = other.display;
         self.depth = other.depth;
         self.time = other.time;
+        self.simulation = other.simulation;
+        self.wave = other.wave;
+        self.collider = other.collider;
+    }
+
+    /// Returns whether waves are shown as they are at the scene's time.
+    fn plays(&self) -> bool {
+        let time = self.simulation.and_then(|simulation| simulation.time);
+        !self.wave.is_empty() && time.is_none()
+    }
+
+    /// Shows waves as they are so many seconds after the simulation began, unless the file names a frame.
+    fn play(&mut self, seconds: f64) {
+        if self.plays() {
+            let simulation = self.simulation.get_or_insert_default();
+            simulation.time = Some((seconds / simulation.frame).max(0.0));
+        }
+    }
+
+    /// Returns the colliders that are right.
+    fn colliders(&self) -> List<Collider> {
+        let made = self.collider.iter().flat_map(ColliderTable::collider);
+        made.collect()
+    }
+
+    fn check_colliders(&self) -> std::result::Result<(), SceneError> {
+        for (index, table) in self.collider.iter().enumerate() {
+            table
+                .collider()
+                .map_err(|fault| fault.of(&format!("collider[{index}]")))?;
+        }
+        Ok(())
     }
 
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
@@ -215,6 +259,7 @@ impl SceneFile {
             .check()
             .map_err(|fault| fault.of("integration"))?;
         self.time.check().map_err(|fault| fault.of("time"))?;
+        self.check_colliders()?;
         let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
         groups.check(&scene)?;
         self.display.fit_exposure(&mut scene);

@@ -12,7 +12,7 @@ use crate::error::SceneError;
 pub(super) struct Moving {
     /// The keys of all tracks.
     pub keys: Vec<String>,
-    /// The tables of which a scene has one, if there is a track in any.
+    /// The tables of which a scene has one, or few, if there is a track in any.
     pub singles: Option<Node>,
     /// The sources and groups that have one, as a document of their own.
     pub units: Node,

@@ -8,6 +8,8 @@ use serde::de::{Error, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, forward_to_deserialize_any};
 
 use super::time::is_period;
+use crate::scene::simulation::KEPT_TRACK;
+use crate::scene::track::TrackTable;
 use crate::scene::{Track, TrackValue};
 
 /// A value of a document.
@@ -148,6 +150,12 @@ impl Node {
         Some(())
     }
 
+    /// Makes a track's table, as a file has it.
+    fn written(track: &Track) -> Result<Self, toml::de::Error> {
+        let table = toml::Value::try_from(TrackTable::from(track));
+        Self::deserialize(table.map_err(toml::de::Error::custom)?)
+    }
+
     /// Returns the moment at which a document is read first.
     pub(super) fn start(&self) -> Moment {
         let period = match self.get("time").and_then(|table| table.get("loop")) {
@@ -226,10 +234,16 @@ impl<'de> Deserializer<'de> for At<'_> {
 
     fn deserialize_newtype_struct<V: Visitor<'de>>(
         self,
-        _: &'static str,
+        name: &'static str,
         visitor: V,
     ) -> Result<V::Value, Words> {
-        visitor.visit_newtype_struct(self)
+        match self.0 {
+            Node::Track(track) if name == KEPT_TRACK => {
+                let written = Node::written(track).map_err(Words::custom)?;
+                At(&written, self.1).deserialize_any(visitor)
+            }
+            _ => visitor.visit_newtype_struct(self),
+        }
     }
 
     fn deserialize_enum<V: Visitor<'de>>(

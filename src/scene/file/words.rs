@@ -16,7 +16,7 @@ pub(super) enum Language {
 }
 
 /// Tables of which a scene has one.
-const SINGLE: [&str; 8] = [
+const SINGLE: [&str; 9] = [
     "camera",
     "image",
     "decay",
@@ -25,7 +25,12 @@ const SINGLE: [&str; 8] = [
     "display",
     "depth",
     "time",
+    "simulation",
 ];
+
+/// Tables of which a scene has some, besides sources and groups, and lists within tables.
+const SEVERAL: [&str; 2] = ["wave", "collider"];
+const LISTS: [&str; 3] = ["layers", "control", "mixture"];
 
 /// Puts a reader's message about a value, or a table without a key, into plain words; gives the key at fault, too.
 pub(super) fn reworded(language: Language, key: String, words: &str) -> (String, String) {
@@ -46,22 +51,19 @@ pub(super) fn plain(language: Language, key: String, message: &str) -> (String, 
         return (table.to_owned(), one_only(language, table));
     }
     let last = key.rsplit('.').next().unwrap_or_default();
-    let is_unit = UNITS.contains(&last);
+    let is_unit = UNITS.contains(&last) || SEVERAL.contains(&&*key);
     if is_unit && message.contains("invalid type") && message.ends_with("expected a sequence") {
         let words = several(language, &key, last);
         return (key, words);
     }
-    if key.ends_with(".layers") && message.ends_with("expected a sequence") {
+    if LISTS.contains(&last) && message.ends_with("expected a sequence") {
+        let begin = "there may be several: write a list of them, also of one";
         let words = match language {
-            Language::Toml => {
-                "there may be several: write a list of them, also of one: layers = [{ }]"
-            }
+            Language::Toml => format!("{begin}: {last} = [{{ }}]"),
             #[cfg(feature = "json")]
-            Language::Json => {
-                "there may be several: write a list of them, also of one: \"layers\": [{ }]"
-            }
+            Language::Json => format!("{begin}: \"{last}\": [{{ }}]"),
         };
-        return (key, words.to_owned());
+        return (key, words);
     }
     let (found, expected) = match message.rsplit_once(", expected ") {
         Some((found, expected)) => (found, expected),

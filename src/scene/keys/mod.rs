@@ -136,6 +136,8 @@ pub(crate) mod words {
     pub(crate) use super::Absent::{Otherwise, Required, RequiredWithout, Value};
     pub(crate) use super::Form::{self, *};
     pub(crate) use super::key;
+    #[allow(unused_imports, reason = "few tables need them")]
+    pub(crate) use crate::scene::simulation::{LAST_FRAME, MOST_SAMPLES};
     use crate::scene::values::{LARGEST, SMALLEST};
 
     pub(crate) const NONE: &str = "";
@@ -173,6 +175,11 @@ pub(crate) mod words {
     /// A number from one to below another.
     pub(crate) const fn from_to_below(least: f64, most: f64) -> Form {
         Number(Included(least), Excluded(most))
+    }
+
+    /// A number above one, up to another.
+    pub(crate) const fn above_to(least: f64, most: f64) -> Form {
+        Number(Excluded(least), Included(most))
     }
 
     /// A number between two, neither included.

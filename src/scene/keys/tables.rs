@@ -5,13 +5,17 @@ use super::words::*;
 use crate::image::ImageSize;
 use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
 use crate::scene::file::{
-    BLOOM_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS, TIME_KEYS, TRACK_KEYS,
+    BLOOM_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS, TIME_KEYS,
 };
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
 use crate::scene::kinds::for_each_kind;
+use crate::scene::simulation::{
+    ACCELERATION_KEYS, BOX_KEYS, COLLIDER_KEYS, CONTROL_KEYS, MIXTURE_KEYS, PLANE_KEYS,
+    SIMULATION_KEYS, SPHERE_KEYS, WAVE_KEYS,
+};
 use crate::scene::source::{LAYER_KEYS, SHARED_KEYS, SourceKind, *};
-use crate::scene::track::NOISE_KEYS;
+use crate::scene::track::{NOISE_KEYS, TRACK_KEYS};
 
 /// What is read of `[image]`, whose type knows no scene.
 const IMAGE_KEYS: &[Key] = &[
@@ -101,6 +105,12 @@ impl Table {
     /// Returns all its keys.
     pub fn keys(&self) -> impl Iterator<Item = &'static Key> + '_ {
         self.groups.iter().flat_map(|group| group.keys)
+    }
+
+    /// Returns the key of the table that it stands in: the last part of its name.
+    #[must_use]
+    pub fn key(&self) -> &'static str {
+        self.name.rsplit('.').next().unwrap_or(self.name)
     }
 
     /// Returns how it is written in TOML, such as `[[torus]]`.
@@ -196,6 +206,7 @@ pub fn tables() -> Vec<Table> {
         keys: PLACED,
     });
     tables.push(group);
+    tables.extend(simulated_tables());
     tables.extend([
         Table::new(
             "bloom",
@@ -230,6 +241,58 @@ pub fn tables() -> Vec<Table> {
         ),
     ]);
     tables
+}
+
+/// Returns the tables of what is simulated.
+fn simulated_tables() -> Vec<Table> {
+    use Count::{Inside, ListInside, Many, Once};
+    let table = Table::new;
+    vec![
+        table(
+            "simulation",
+            Once,
+            "How waves of particles are simulated, and when they are shown",
+            SIMULATION_KEYS,
+        ),
+        table(
+            "wave",
+            Many,
+            "Waves of particles, which fly apart where they hit something",
+            WAVE_KEYS,
+        ),
+        table("collider", Many, "What waves hit", COLLIDER_KEYS),
+        table(
+            "acceleration",
+            Inside,
+            "How fast particles fly away around the point that they hit",
+            ACCELERATION_KEYS,
+        ),
+        table(
+            "control",
+            ListInside,
+            "Points that particles fly to from where they hit",
+            CONTROL_KEYS,
+        ),
+        table(
+            "mixture",
+            ListInside,
+            "Further shapes of separate particles",
+            MIXTURE_KEYS,
+        ),
+        table("collider.box", Inside, "A box that waves hit", BOX_KEYS),
+        table(
+            "collider.sphere",
+            Inside,
+            "A ball that waves hit",
+            SPHERE_KEYS,
+        ),
+        table(
+            "collider.plane",
+            Inside,
+            "A plane that waves hit from where it faces",
+            PLANE_KEYS,
+        ),
+    ]
 }
 
 /// Returns what a track has, which may stand in the place of numbers, vectors, colours and lists of such

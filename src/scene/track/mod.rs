@@ -12,22 +12,26 @@
 
 mod noise;
 mod smooth;
+mod table;
 #[cfg(test)]
 mod tests;
 mod value;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "files")]
 pub(in crate::scene) use noise::NOISE_KEYS;
 pub use noise::TrackNoise;
+#[cfg(feature = "files")]
+pub(in crate::scene) use table::TRACK_KEYS;
+pub(in crate::scene) use table::TrackTable;
 pub use value::TrackValue;
 
 use super::values::{Checked, Fault, LARGEST};
 use smooth::tangent;
 
 /// How values go on from one key of a [`Track`] to the next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Interpolation {
@@ -45,7 +49,7 @@ pub enum Interpolation {
 }
 
 /// What a [`Track`] does before its first key and behind its last.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum TrackLoop {

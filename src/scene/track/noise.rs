@@ -1,7 +1,7 @@
 //! Noise over time: flicker and trembling. Value noise: random numbers at equal steps of time, smooth between, in
 //! octaves of which each is twice as fast and half as large. It is a function of the time and its keys alone.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::TrackValue;
 use crate::scene::random;
@@ -15,7 +15,7 @@ const MOST_FREQUENCY: f64 = 1e6;
 const PURPOSE: u64 = 0x0074_7261_636b;
 
 /// Noise that is added to a [`Track`](super::Track): every number of its value has its own.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct TrackNoise {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::DVec3;
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::scene::colors::from_hex;
 
@@ -92,7 +92,7 @@ impl TrackValue {
     }
 
     /// Returns whether such is true of all its numbers.
-    pub(super) fn all(&self, is_such: &impl Fn(f64) -> bool) -> bool {
+    pub(in crate::scene) fn all(&self, is_such: &impl Fn(f64) -> bool) -> bool {
         match self {
             Self::Number(number) => is_such(*number),
             Self::List(items) => items.iter().all(|item| item.all(is_such)),
@@ -109,6 +109,15 @@ impl TrackValue {
                 }
                 _ => format!("a list of {}", items.len()),
             },
+        }
+    }
+}
+
+impl Serialize for TrackValue {
+    fn serialize<S: Serializer>(&self, writer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(number) => writer.serialize_f64(*number),
+            Self::List(items) => items.serialize(writer),
         }
     }
 }

@@ -78,10 +78,20 @@ fn scene(table: &Table, but: &str, line: &str) -> String {
             both.map(|name| format!("{name} = {}\n", matrix(name)))
                 .collect()
         }
+        // A collider has one shape.
+        "collider" if !["box", "sphere", "plane", "mesh"].contains(&but) => {
+            "sphere = { radius = 1 }\n".to_owned()
+        }
+        "simulation" if but != "time" => "time = 70\n".to_owned(),
         _ => required(table, but).join("\n") + "\n",
     };
-    let camera = format!("[camera]\n{}", keys(&tables()[0], ""));
-    let name = table.name;
+    // Waves are shown as they are at a frame, whatever the time.
+    let simulation = match table.name {
+        "simulation" => "",
+        _ => "[simulation]\ntime = 70\n",
+    };
+    let camera = format!("[camera]\n{}{simulation}", keys(&tables()[0], ""));
+    let name = table.key();
     let own = keys(table, but) + line + "\n";
     match table.count {
         Count::Required => format!("[{name}]\n{own}"),
@@ -91,8 +101,7 @@ fn scene(table: &Table, but: &str, line: &str) -> String {
         Count::Once => format!("{camera}[{name}]\n{own}"),
         Count::Many => format!("{camera}[[{name}]]\n{own}"),
         Count::Inside | Count::ListInside => {
-            let holds =
-                |key: &Key| matches!(key.form, Form::Table(it) | Form::Tables(it) if it == name);
+            let holds = |key: &Key| matches!(key.form, Form::Table(it) | Form::Tables(it) if it == table.name);
             let tables = tables();
             let mut hosts = tables.iter().filter(|host| host.keys().any(holds));
             let host = hosts.find(|host| host.name != "beam").unwrap(); // which has no arc
@@ -103,7 +112,7 @@ fn scene(table: &Table, but: &str, line: &str) -> String {
             format!(
                 "{camera}{}\n{}{header}\n{own}",
                 host.header(),
-                keys(host, "")
+                keys(host, name)
             )
         }
     }
