@@ -48,6 +48,9 @@ pub enum Command {
     /// Compare the methods on a scene: error against float64, and frames a second
     #[command(after_help = examples::COMPARE)]
     Compare(CompareArguments),
+    /// Tell where and when waves of particles hit something, as JSON
+    #[command(after_help = examples::CONTACTS)]
+    Contacts(ContactsArguments),
     /// Draw the papers' figures into a folder, with a page that shows each beside its caption
     #[command(after_help = examples::FIGURES)]
     Figures(FiguresArguments),

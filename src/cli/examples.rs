@@ -57,6 +57,11 @@ Examples:
   energywave compare laser.toml --size 64x64 --map errors.png --map errors.exr
   energywave compare laser.toml --size 128x128 --json";
 
+pub const CONTACTS: &str = "\
+Examples:
+  energywave contacts splash.toml --frames 0..119
+  energywave contacts splash.toml -o contacts.json";
+
 pub const FIGURES: &str = "\
 Examples:
   energywave figures -o figures

@@ -4,6 +4,7 @@ mod animate;
 mod args;
 mod bench;
 mod compare;
+mod contacts;
 mod devices;
 mod environment;
 mod error_map;
@@ -73,6 +74,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Contacts(arguments) => contacts::run(&arguments),
         Command::Figures(arguments) => figures::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Schema => print(&format!("{}\n", json_schema())),

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use energywave::image::ImageSize;
 
+use super::animate::{Range, range};
 use super::args::{DeviceArgument, seconds, size, tolerance};
 use super::overrides::Overrides;
 use super::records::DataArgument;
@@ -86,6 +87,18 @@ pub struct CompareArguments {
     pub seconds: f64,
     #[command(flatten)]
     pub device: DeviceArgument,
+}
+
+#[derive(Debug, Args)]
+pub struct ContactsArguments {
+    /// Scene file, TOML or (.json) JSON; - is standard input
+    pub scene: PathBuf,
+    /// First and last frame of the simulation whose contacts are told [default: 0 to the scene's [simulation] time]
+    #[arg(long, value_name = "A..B", value_parser = range, allow_hyphen_values = true)]
+    pub frames: Option<Range>,
+    /// File to write; - is standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    pub output: PathBuf,
 }
 
 #[derive(Debug, Args)]

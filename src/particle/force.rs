@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! D = k z n - h (w.n) n                 penalty: z the depth that the step was to reach, w the velocity, n outwards
-//! R = -r sum of (Q - P) / |Q - P|^2     repulsion of all particles Q in reach, without what of it points inwards
+//! R = -r sum of (Q - P) / |Q - P|^2     repulsion of all particles Q in reach, without what of it points inwards; P and Q
+//!                                       are where the step would end
 //! A = c (D + R) / |D + R|               circular: the new velocity, or an acceleration
 //! v = (E - H) / tau                     irregular: from H to its control point E, where it dies
 //! ```
@@ -76,7 +77,7 @@ impl Laws {
             body.velocity = (target - touch.point) / impact.lifetime;
         } else {
             let pull = match law.wave.repulsion > 0.0 {
-                true => neighbours.pull(body.position, law.wave.reach),
+                true => neighbours.pull(touch.end, law.wave.reach),
                 false => DVec3::ZERO,
             };
             let push = self.speed(body.name, body.is_continuous)
@@ -86,7 +87,7 @@ impl Laws {
                     body.phase = Phase::Within;
                     body.velocity += push;
                 }
-                _ => body.velocity = push,
+                _ => (body.position, body.velocity) = (touch.point, push),
             }
         }
         state.bodies[touch.index] = body;

@@ -31,17 +31,22 @@ impl History {
 
     /// Returns the state at a frame.
     pub(super) fn at(&mut self, laws: &Laws, frame: u32) -> &State {
-        self.go(laws, frame, &mut |_| {});
+        self.go(laws, frame);
         &self.now
     }
 
     /// Goes to a frame from the nearest one before it.
-    fn go(&mut self, laws: &Laws, frame: u32, see: &mut impl FnMut(Contact)) {
+    fn go(&mut self, laws: &Laws, frame: u32) {
         let nearest = (frame / self.spacing) as usize;
         let nearest = &self.kept[nearest.min(self.kept.len() - 1)];
         if self.now.frame > frame || self.now.frame < nearest.frame {
             self.now.clone_from(nearest);
         }
+        self.walk(laws, frame, &mut |_| {});
+    }
+
+    /// Goes on to a later frame.
+    fn walk(&mut self, laws: &Laws, frame: u32, see: &mut impl FnMut(Contact)) {
         while self.now.frame < frame {
             laws.step(&mut self.now, &mut self.scratch, see);
             self.keep();
@@ -56,8 +61,8 @@ impl History {
         last: u32,
         see: &mut impl FnMut(Contact),
     ) {
-        self.go(laws, first, &mut |_| {});
-        self.go(laws, last, see);
+        self.go(laws, first);
+        self.walk(laws, last, see);
     }
 
     /// Keeps the state if it is the next to be kept; where there are too many, every second goes.

@@ -20,7 +20,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use crate::error::{Result, SceneError};
+use crate::error::{Error, Result, SceneError};
 use crate::memory;
 use crate::scene::{LAST_FRAME, Scene};
 use history::History;
@@ -108,7 +108,7 @@ impl Simulation {
     /// Makes the simulation of a scene.
     ///
     /// # Errors
-    /// [`crate::Error::Scene`] if a value of the scene is wrong, or its particles do not fit into the memory.
+    /// [`Error::Scene`] if a value of the scene is wrong, or its particles do not fit into the memory.
     pub fn new(scene: &Scene) -> Result<Self> {
         scene.validate()?;
         check_memory(scene)?;
@@ -125,7 +125,8 @@ impl Simulation {
     /// other. The particles of a wave are in the order of their emission.
     ///
     /// # Errors
-    /// [`crate::Error::Scene`] if it is no frame, 0 to 1e6, or more than 2^32 particles of a wave came before it.
+    /// [`Error::Unsupported`] if it is no frame, 0 to 1e6; [`Error::Scene`] if more than 2^32 particles of a wave came
+    /// before it.
     pub fn light(&mut self, frame: f64) -> Result<Vec<LightElement>> {
         let mut elements = Vec::new();
         self.show(frame, |laws, shown| laws.shine(shown, &mut elements))?;
@@ -169,8 +170,9 @@ impl Simulation {
 
     fn check_frame(&self, frame: f64) -> Result<()> {
         if !(0.0..=LAST_FRAME).contains(&frame) {
-            let message = format!("frames are counted from 0 to {LAST_FRAME}; found {frame}");
-            return Err(SceneError::value("simulation.time", message).into());
+            return Err(Error::Unsupported(format!(
+                "frames of a simulation are counted from 0 to {LAST_FRAME}; found {frame}"
+            )));
         }
         for (index, law) in self.laws.waves.iter().enumerate() {
             let count = law.wave.most_rate() * (frame + 1.0);

@@ -1,8 +1,8 @@
 //! One step of a simulation, which is one frame: particles are emitted and move; those that enter a solid on their way
 //! hit it where they do (a sweep: no speed passes through), then forces give them their new velocity.
 //!
-//! Every step depends on the state before alone, and what happens to a particle on positions, which no force of the step
-//! changes any more: no order matters.
+//! Every step depends on the state before alone, and forces on where all particles would be at its end if there were no
+//! solids, which no force of the step changes any more: no order matters.
 
 use glam::DVec3;
 
@@ -12,7 +12,6 @@ use super::laws::Laws;
 use super::neighbours::Neighbours;
 use super::solid::Entry;
 use super::state::{Body, Impact, Name, Phase, State};
-use crate::scene::Response;
 
 /// What of a step is kept for the next, so that it takes no new memory.
 #[derive(Debug, Default)]
@@ -118,10 +117,6 @@ impl Laws {
                     time: now + (1.0 - rest) + entry.share * rest,
                     is_new: true,
                 });
-                // What is not put back hits it only by what the forces do.
-                if self.law(body.name).wave.response == Response::Replace {
-                    body.position = point;
-                }
             } else if body.phase == Phase::Within {
                 self.stay_or_leave(&mut body, &state.impacts[index], kept, touches);
             }

@@ -139,7 +139,12 @@ impl Scene {
             light.1 <= 0.0
         });
         let Some(first) = first else {
-            let message = "the scene has no source of light: the picture is black";
+            let message = match self.waves.is_empty() {
+                true => "the scene has no source of light: the picture is black",
+                false => {
+                    "waves of particles are simulated, but not drawn yet: the picture is black"
+                }
+            };
             return Some(SceneError::value("", message));
         };
         let message = match light {

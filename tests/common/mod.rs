@@ -325,5 +325,9 @@ pub fn figures(size: u32, method: fn(&MethodKeys) -> Method) -> Vec<(String, Sce
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         (name, scene)
     };
-    scene_files().into_iter().map(figure).collect()
+    let scenes = scene_files().into_iter().map(figure);
+    // Waves of particles are simulated, but not drawn yet.
+    scenes
+        .filter(|(_, scene)| scene.source_count() > 0)
+        .collect()
 }

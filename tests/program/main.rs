@@ -12,6 +12,7 @@ mod bad_displays; // has displays refused that no file can hold
 mod bad_looks; // has every fault of layers named with its place
 mod bad_scenes;
 mod bad_series; // has every fault of a scene file named with its place
+mod bad_simulations; // has every fault of waves of particles named with its place
 mod bad_tracks;
 mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
 mod cameras; // reads matrices of engines, and refuses what is none
@@ -37,6 +38,7 @@ mod outputs; // writes to links, pipes and devices, and reads scenes from pipes
 #[cfg(unix)] // as cli
 mod presets; // writes every preset, and nothing over what is there
 mod scene_files; // reads again what was written
+mod simulation; // has waves of particles hit things
 mod speaks; // says what it drew, and is quiet
 mod tracks; // draws scenes at times
 mod verify; // checks known rays, past sources and past whole scenes

@@ -92,7 +92,7 @@ pub struct Shard {
 /// The greatest number of a frame.
 pub const LAST_FRAME: u32 = 99_999_999;
 
-fn range(text: &str) -> Result<Range, String> {
+pub fn range(text: &str) -> Result<Range, String> {
     let number = |text: &str| text.trim().parse().ok().filter(|n: &u32| *n <= LAST_FRAME);
     let (first, last) = text.split_once("..").unwrap_or((text, text));
     match (number(first), number(last)) {

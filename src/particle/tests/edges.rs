@@ -4,47 +4,42 @@ use super::*;
 
 #[test]
 fn what_accelerates_lets_particles_in_and_pushes_them_out() {
-    let scene = changed(|wave| {
-        wave.response = Response::Accelerate;
-        wave.speed = 4.0;
-        wave.acceleration = crate::scene::Acceleration::new([1.5, 0.0], [1.5, 0.0]);
-    });
-    let all = states(&scene, 200, |_| {});
-    let last = all.last().unwrap();
-    let deepest = all.iter().flat_map(|it| &it.bodies);
-    let deepest = deepest.map(|body| body.position.x).fold(0.0, f64::max);
-    let (mut through, mut back) = (0.0, 0.0);
-    for body in last
-        .bodies
-        .iter()
-        .filter(|body| body.phase == Phase::Circular)
-    {
-        match body.position.x > 8.0 {
-            true => through += 1.0,
-            false => back += 1.0,
+    /// The greatest depth, and the speeds of those that came back and of those that went through.
+    fn ends(speed: f64) -> (f64, [Vec<f64>; 2]) {
+        let scene = changed(|wave| {
+            (wave.response, wave.speed) = (Response::Accelerate, speed);
+            wave.acceleration = crate::scene::Acceleration::new([1.5, 0.0], [1.5, 0.0]);
+        });
+        let all = states(&scene, 160, |_| {});
+        let bodies = all.iter().flat_map(|state| &state.bodies);
+        let deepest = bodies.map(|body| body.position.x).fold(0.0, f64::max);
+        let mut speeds = [Vec::new(), Vec::new()];
+        let last = all.last().unwrap().bodies.iter();
+        for body in last.filter(|body| body.phase == Phase::Circular) {
+            speeds[usize::from(body.position.x > 8.0)].push(body.velocity.length());
         }
+        (deepest, speeds)
     }
-    let share = through / (through + back);
-    println!(
-        "as deep as {deepest}; {share} of {} are through",
-        through + back
-    );
-    // Measured with another program: 64 % pass at this speed.
-    assert!(deepest > 16.0 && (0.45..0.8).contains(&share));
-    let slow = changed(|wave| {
-        wave.response = Response::Accelerate;
-        wave.speed = 2.0;
-    });
-    let all = states(&slow, 100, |_| {});
-    let out = all
-        .last()
-        .unwrap()
-        .bodies
-        .iter()
-        .filter(|it| it.phase == Phase::Circular);
-    let speeds: Vec<f64> = out.map(|it| it.velocity.length()).collect();
-    let most = speeds.iter().copied().fold(0.0, f64::max);
-    assert!(speeds.len() > 100 && most > 3.0 && most < 12.0, "{most}");
+    for (speed, passes) in [(2.0, false), (4.0, false), (16.0, true)] {
+        let (deepest, [back, through]) = ends(speed);
+        let ideal = speed * speed / (2.0 * 1.5);
+        let range = |it: &[f64]| {
+            it.iter()
+                .fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)))
+        };
+        println!(
+            "speed {speed}: as deep as {deepest:.1}, straight against it {ideal:.1}; back {} at {:?}, through {} at {:?}",
+            back.len(),
+            range(&back),
+            through.len(),
+            range(&through)
+        );
+        assert_eq!(!through.is_empty(), passes);
+        assert!(deepest > 0.5 * ideal && back.len() + through.len() > 300);
+        // They have no speed of their own, as those have that are replaced.
+        let (least, most) = range(&[back, through].concat());
+        assert!(most > 2.0 * least);
+    }
 }
 
 #[test]
@@ -64,7 +59,7 @@ fn scenes_at_the_edge_of_what_is_possible_are_simulated() {
     };
     // No wave, no collider, no particle, one particle.
     assert_eq!(
-        count(&Scene::new(Camera::new(DVec3::X, DVec3::ZERO)), 70),
+        count(&Scene::new(Camera::new(4.0 * DVec3::X, DVec3::ZERO)), 70),
         (0, 0)
     );
     let mut bare = base();
