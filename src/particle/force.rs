@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! D = k z n - h (w.n) n                 penalty: z the depth that the step was to reach, w the velocity, n outwards
-//! R = -r sum of (Q - P) / |Q - P|^2     repulsion of all particles Q in reach, without what of it points inwards; P and Q
-//!                                       are where the step would end
+//! R = -r sum of (Q - P) / |Q - P|^2     repulsion of all particles Q in reach, without what of it points inwards; P
+//!                                       and Q are where the step would end
 //! A = c (D + R) / |D + R|               circular: the new velocity, or an acceleration
 //! v = (E - H) / tau                     irregular: from H to its control point E, where it dies
 //! ```

@@ -1,5 +1,5 @@
-//! States that are kept, so that no frame is far from one: the state at a frame is a function of the scene and the frame
-//! alone, in whatever order frames are asked for.
+//! States that are kept, so that no frame is far from one: the state at a frame is a function of the scene and the
+//! frame alone, in whatever order frames are asked for.
 
 use super::Contact;
 use super::laws::Laws;

@@ -8,8 +8,8 @@ use super::state::Name;
 use crate::scene::{EmittedWave, Scene, Signs};
 
 /// How forces act where a particle hits. Measured with the thesis' base values, and all particles in reach as
-/// neighbours: as printed 1.3 % fly into a box; with both signs mended 73 % do, pushed by the beam behind them; with what
-/// of the repulsion points inwards left out none does.
+/// neighbours: as printed 1.3 % fly into a box; with both signs mended 73 % do, pushed by the beam behind them; with
+/// what of the repulsion points inwards left out none does.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rule {
     /// What h (w.n) n is multiplied with.
@@ -143,8 +143,8 @@ impl Laws {
         around(value, range, unit)
     }
 
-    /// Returns the point that a particle flies to which hits something at a point and a frame: E, given along, right and
-    /// up from where the wave's axis meets a solid.
+    /// Returns the point that a particle flies to which hits something at a point and a frame: E, given along, right
+    /// and up from where the wave's axis meets a solid.
     pub(super) fn target(&self, name: Name, control: f64, hit: DVec3, frame: u32) -> DVec3 {
         let wave = &self.law(name).wave;
         let points = || wave.control.iter().map(|it| it.probability);

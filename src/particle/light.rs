@@ -6,8 +6,8 @@
 //! grain    one sprite, as is a particle that has hit nothing
 //! ```
 //!
-//! A ball holds the light 2 pi h^3/15 of the profile (1 - r/h)^2, a streak whose radius goes straight from a to b on its
-//! way of length l that of its two half balls, and pi l (a^2 + a b + b^2)/18: a streak gets what its sprites have.
+//! A ball holds the light 2 pi h^3/15 of the profile (1 - r/h)^2, a streak whose radius goes straight from a to b on
+//! its way of length l that of its two half balls, and pi l (a^2 + a b + b^2)/18: a streak gets what its sprites have.
 
 use std::f64::consts::PI;
 
@@ -125,7 +125,7 @@ fn rod(wave: &EmittedWave, shown: &Shown, light: DVec3, elements: &mut Vec<Light
     let count = f64::from(samples);
     let radius = |index: u32| wave.size * (count - f64::from(index) * (1.0 - roundness)) / count;
     let place = |index: u32| {
-        let side = if index % 2 == 0 { -1.0 } else { 1.0 }; // (-1)^j, j = index + 1
+        let side = if index.is_multiple_of(2) { -1.0 } else { 1.0 }; // (-1)^j
         middle + side * f64::from(index) * wave.spacing * along
     };
     let last = samples - 1;

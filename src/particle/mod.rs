@@ -1,5 +1,5 @@
-//! The simulation of waves that hit things (Nito 2013): on the host, in float64, on one thread, with random numbers that
-//! are functions of the particle and no library's sines, so that it is the same on every machine, to the bit.
+//! The simulation of waves that hit things (Nito 2013): on the host, in float64, on one thread, with random numbers
+//! that are functions of the particle and no library's sines, so that it is the same on every machine, to the bit.
 //!
 //! A [`Simulation`] gives, for every frame, the light of all particles ([`LightElement`]) and where they hit something
 //! ([`Contact`]). Nothing of it is drawn yet.
@@ -154,8 +154,8 @@ impl Simulation {
         Ok(particles)
     }
 
-    /// Returns all contacts in some frames, both ends included: those from the first on, until the frame after the last.
-    /// They are in the order of the frames, of one frame in that of the particles' emission.
+    /// Returns all contacts in some frames, both ends included: those from the first on, until the frame after the
+    /// last. They are in the order of the frames, of one frame in that of the particles' emission.
     ///
     /// # Errors
     /// As [`Simulation::light`].

@@ -116,7 +116,7 @@ mod tests {
                 let [x, y, z, _] = units(3, id, 0, Purpose::Emission);
                 // Two crowds, far apart, and some at one place.
                 let crowd = f64::from(id % 2) * spread * DVec3::new(1.0, 2.0, 3.0);
-                if id % 17 == 0 {
+                if id.is_multiple_of(17) {
                     crowd
                 } else {
                     10.0 * DVec3::new(x, y, z) + crowd

@@ -83,7 +83,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ),
     (
         "[[wave]]\ndirection = [1, 0, 0]\nacceleration = { continuous = 0.25 }\n",
-        "6:16: wave[0].acceleration.continuous_range",
+        "6:31: wave[0].acceleration.continuous_range",
         "0.5 is more than the 0.25 that it is around; give at most that",
     ),
     (
@@ -173,17 +173,17 @@ const BAD: &[(&str, &str, &str)] = &[
     ),
     (
         "[wave]\ndirection = [1, 0, 0]\n",
-        "4:2: wave",
+        "4:1: wave",
         "write double brackets, [[wave]]",
     ),
     (
         "[collider]\nvisible = true\n",
-        "4:2: collider",
+        "4:1: collider",
         "write double brackets, [[collider]]",
     ),
     (
         "[[simulation]]\nseed = 1\n",
-        "4:3: simulation",
+        "4:1: simulation",
         "write single brackets, [simulation]",
     ),
     (
@@ -218,7 +218,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ),
     (
         "[[wave]]\ndirection = [1, 0, 0]\norigin = { times = [1, 0], values = [[1, 2, 3], [3, 4, 5]] }\n",
-        "6:19: wave[0].origin.times[1]",
+        "6:24: wave[0].origin.times[1]",
         "0 s is not later than the 1 s before it",
     ),
     (
@@ -289,4 +289,3 @@ fn every_fault_of_what_is_simulated_is_told_with_its_place() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
-

@@ -28,7 +28,7 @@ fn what_accelerates_lets_particles_in_and_pushes_them_out() {
                 .fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)))
         };
         println!(
-            "speed {speed}: as deep as {deepest:.1}, straight against it {ideal:.1}; back {} at {:?}, through {} at {:?}",
+            "speed {speed}: {deepest:.1} deep, ideally {ideal:.1}; back {} at {:?}, through {} at {:?}",
             back.len(),
             range(&back),
             through.len(),
@@ -38,7 +38,7 @@ fn what_accelerates_lets_particles_in_and_pushes_them_out() {
         assert!(deepest > 0.5 * ideal && back.len() + through.len() > 300);
         // They have no speed of their own, as those have that are replaced.
         let (least, most) = range(&[back, through].concat());
-        assert!(most > 2.0 * least);
+        assert!(most > 1.8 && most - least > 1.0);
     }
 }
 

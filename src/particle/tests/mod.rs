@@ -1,5 +1,5 @@
-//! The simulation against what the thesis says, and against itself in another order. The laws that are spoiled here have
-//! to fail the same assertions.
+//! The simulation against what the thesis says, and against itself in another order. The laws that are spoiled here
+//! have to fail the same assertions.
 
 use glam::DVec3;
 

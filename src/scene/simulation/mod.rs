@@ -1,5 +1,5 @@
-//! What is simulated: waves of particles and what they hit (Nito 2013). Its frames are the thesis': all speeds, lifetimes
-//! and rates are per frame, and a step of the simulation is one.
+//! What is simulated: waves of particles and what they hit (Nito 2013). Its frames are the thesis': all speeds,
+//! lifetimes and rates are per frame, and a step of the simulation is one.
 
 mod collider;
 mod pattern;

@@ -161,7 +161,8 @@ pub struct Mixture {
 
 // What is read of `mixture`.
 keys! { pub(in crate::scene) MIXTURE_KEYS;
-    probability: from_to(0.0, 1.0), NONE, Required, "which share of separate particles is so; the rest is as the wave says";
+    probability: from_to(0.0, 1.0), NONE, Required,
+        "which share of separate particles is so; the rest is as the wave says";
     samples: Whole(1, MOST_SAMPLES), NONE, Value("12"), "1: a ball; more: a rod of so many";
     roundness: above_to(0.0, 1.0), NONE, Value("0.5"), "1: a rod with round ends; less: with sharp ones";
 }

@@ -9,9 +9,9 @@ use super::{Acceleration, ControlPoint, Mixture, Varying};
 use crate::scene::colors::read_color;
 use crate::scene::values::{Checked, Fault, direction, finite, positive, vector};
 
-/// A wave of particles, emitted from a disc in one direction. Where it hits a [`Collider`](super::Collider), each of its
-/// particles joins one of eight patterns: circular or irregular, and continuous, granular, or a rod with round or with
-/// sharp ends.
+/// A wave of particles, emitted from a disc in one direction. Where it hits a [`Collider`](super::Collider), each of
+/// its particles joins one of eight patterns: circular or irregular, and continuous, granular, or a rod with round or
+/// with sharp ends.
 ///
 /// ```
 /// use energywave::glam::DVec3;
@@ -128,10 +128,12 @@ keys! { pub(in crate::scene) WAVE_KEYS;
     reach: POSITIVE, WORLD, Value("3"), "how far they do";
     spring: NOT_NEGATIVE, NONE, Value("1"), "k: how much a collider pushes out by depth";
     damper: NOT_NEGATIVE, NONE, Value("0.8"), "h: how much it does by speed";
-    signs: Word(&["corrected", "printed"]), NONE, Value("\"corrected\""), "of damper and repulsion, as in 2013 or mended";
+    signs: Word(&["corrected", "printed"]), NONE, Value("\"corrected\""),
+        "of damper and repulsion, as in 2013 or mended";
     response: Word(&["replace", "accelerate"]), NONE, Value("\"replace\""),
         "particles get a new speed where they hit, or are pushed out by and by";
-    control: Tables("control"), NONE, Otherwise("none"), "the points of the irregular pattern; with circular < 1 needed";
+    control: Tables("control"), NONE, Otherwise("none"),
+        "the points of the irregular pattern; with circular < 1 needed";
     mixture: Tables("mixture"), NONE, Otherwise("none"), "further shapes of separate particles in the same wave";
     size: POSITIVE, WORLD, Value("1.2"), "S: the radius of a sprite";
     threads: Whole(1, MOST_SAMPLES), NONE, Value("12"), "M: of how many sprites a thread is";
@@ -312,7 +314,7 @@ impl EmittedWave {
             return Err(Fault::new("control", message));
         }
         if self.control.iter().all(|point| point.probability == 0.0) {
-            let message = "the probabilities of all control points are 0, so that none can be chosen: give one a probability";
+            let message = "the probabilities of all control points are 0, so that none can be chosen: raise one";
             return Err(Fault::new("control", message));
         }
         Ok(())
