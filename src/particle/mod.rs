@@ -197,7 +197,7 @@ impl Simulation {
         } = self;
         let before = history.at(laws, whole as u32);
         if share == 0.0 {
-            for (body, impact) in before.bodies.iter().zip(&before.impacts) {
+            for (body, impact) in before.alive() {
                 show(laws, &Shown::new(*body, *impact, frame));
             }
             return Ok(());
@@ -221,8 +221,8 @@ fn between(
 ) {
     let begin = f64::from(before.frame);
     let moment = begin + share;
-    let mut later = after.bodies.iter().peekable();
-    for (body, impact) in before.bodies.iter().zip(&before.impacts) {
+    let mut later = after.alive().map(|(body, _)| body).peekable();
+    for (body, impact) in before.alive() {
         let position = match later.next_if(|it| it.name == body.name) {
             Some(later) => body.position.lerp(later.position, share),
             // It is over before the next frame, perhaps before this moment.

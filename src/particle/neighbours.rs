@@ -10,15 +10,23 @@ const COINCIDENT: f64 = 1e-200;
 const CELLS: f64 = 8.0;
 const LEAST_CELLS: f64 = 512.0;
 
+/// Cells are so much larger than the reach, more than their places are rounded.
+const WIDER: f64 = 1.0 + 1e-9;
+
+/// Neighbours that are summed side by side, each with a sum of its own.
+const LANES: usize = 4;
+
 /// Particles by the cells of a grid.
 #[derive(Debug, Default)]
 pub(super) struct Neighbours {
     low: DVec3,
-    cell: f64,
+    /// 1 / the size of a cell.
+    cells: f64,
     sizes: [usize; 3],
     /// Where the particles of each cell begin, and the end of the last.
     begins: Vec<u32>,
-    points: Vec<DVec3>,
+    /// Their coordinates.
+    points: [Vec<f64>; 3],
     /// What is sorted: all that are near, with their cells.
     near: Vec<(DVec3, u32)>,
 }
@@ -40,13 +48,14 @@ impl Neighbours {
         self.near
             .extend(all.filter(is_near).map(|point| (point, 0)));
         self.low = low;
-        self.cell = reach;
         let most = (CELLS * self.near.len() as f64).max(LEAST_CELLS);
+        let mut cell = WIDER * reach;
         let sizes = |cell: f64| ((high - low) / cell).floor() + 1.0;
-        while sizes(self.cell).element_product() > most {
-            self.cell *= 1.25; // larger cells hold all neighbours, too
+        while sizes(cell).element_product() > most {
+            cell *= 1.25; // larger cells hold all neighbours, too
         }
-        self.sizes = sizes(self.cell).to_array().map(|size| size as usize);
+        self.cells = 1.0 / cell;
+        self.sizes = sizes(cell).to_array().map(|size| size as usize);
         self.sort();
     }
 
@@ -63,12 +72,15 @@ impl Neighbours {
         for cell in 0..count {
             self.begins[cell + 1] += self.begins[cell];
         }
-        self.points.clear();
-        self.points.resize(self.near.len(), DVec3::ZERO);
+        for numbers in &mut self.points {
+            numbers.resize(self.near.len(), 0.0);
+        }
         // Each begin moves to the end of its cell, which is the begin of the next one.
         for (point, cell) in &self.near {
             let at = &mut self.begins[*cell as usize];
-            self.points[*at as usize] = *point;
+            for (numbers, number) in self.points.iter_mut().zip(point.to_array()) {
+                numbers[*at as usize] = number;
+            }
             *at += 1;
         }
         self.begins.copy_within(0..count, 1);
@@ -76,7 +88,9 @@ impl Neighbours {
     }
 
     fn place(&self, point: DVec3) -> [usize; 3] {
-        let place = ((point - self.low) / self.cell).max(DVec3::ZERO).to_array();
+        let place = ((point - self.low) * self.cells)
+            .max(DVec3::ZERO)
+            .to_array();
         [0, 1, 2].map(|k| (place[k] as usize).min(self.sizes[k] - 1))
     }
 
@@ -91,16 +105,38 @@ impl Neighbours {
                 let row = self.sizes[0] * (y + self.sizes[1] * z);
                 let begin = self.begins[row + columns.start] as usize;
                 let end = self.begins[row + columns.end] as usize;
-                for other in &self.points[begin..end] {
-                    let away = *other - point;
-                    let square = away.length_squared();
-                    if square <= reach * reach && square > COINCIDENT {
-                        sum += away / square;
-                    }
-                }
+                sum += self.pull_of(begin, end, point, reach * reach);
             }
         }
         sum
+    }
+
+    /// Returns what of it some neighbours give. Those out of reach count as nothing instead of being left out, so that
+    /// several are summed side by side.
+    fn pull_of(&self, begin: usize, end: usize, point: DVec3, most: f64) -> DVec3 {
+        let [xs, ys, zs] = [0, 1, 2].map(|k| &self.points[k][begin..end]);
+        let mut sums = [[0.0; LANES]; 3];
+        let mut add = |lane: usize, x: f64, y: f64, z: f64| {
+            let (x, y, z) = (x - point.x, y - point.y, z - point.z);
+            let square = x * x + y * y + z * z;
+            let is_near = square <= most && square > COINCIDENT;
+            let weight = 1.0 / if is_near { square } else { f64::INFINITY };
+            sums[0][lane] += weight * x;
+            sums[1][lane] += weight * y;
+            sums[2][lane] += weight * z;
+        };
+        let (xs, x_rest) = xs.as_chunks::<LANES>();
+        let (ys, y_rest) = ys.as_chunks::<LANES>();
+        let (zs, z_rest) = zs.as_chunks::<LANES>();
+        for ((x, y), z) in xs.iter().zip(ys).zip(zs) {
+            for lane in 0..LANES {
+                add(lane, x[lane], y[lane], z[lane]);
+            }
+        }
+        for ((x, y), z) in x_rest.iter().zip(y_rest).zip(z_rest) {
+            add(0, *x, *y, *z);
+        }
+        sums.map(|lanes| lanes.iter().sum::<f64>()).into()
     }
 }
 

@@ -23,9 +23,8 @@ enum Form {
     Box {
         center: DVec3,
         half: DVec3,
-        /// Its axes as columns.
+        /// Its axes as rows: turns what is the world's into what is its own.
         axes: DMat3,
-        bound: f64,
     },
     Sphere {
         center: DVec3,
@@ -54,15 +53,11 @@ impl Solid {
                 half,
                 rotation,
             } => {
-                let bound = half.length();
-                let axes = rotation.map_or(DMat3::IDENTITY, turn);
-                let form = Form::Box {
-                    center,
-                    half,
-                    axes,
-                    bound,
-                };
-                (form, center.length() + bound)
+                let axes = rotation.map_or(DMat3::IDENTITY, turn).transpose();
+                (
+                    Form::Box { center, half, axes },
+                    center.length() + half.length(),
+                )
             }
             ColliderShape::Sphere { center, radius } => {
                 (Form::Sphere { center, radius }, center.length() + radius)
@@ -81,10 +76,8 @@ impl Solid {
     /// Returns how far a point lies outside; within, the negative distance to the surface.
     pub(super) fn distance(&self, point: DVec3) -> f64 {
         match &self.form {
-            Form::Box {
-                center, half, axes, ..
-            } => {
-                let beyond = (axes.transpose() * (point - *center)).abs() - *half;
+            Form::Box { center, half, axes } => {
+                let beyond = (*axes * (point - *center)).abs() - *half;
                 beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
             }
             Form::Sphere { center, radius } => (point - *center).length() - radius,
@@ -98,16 +91,14 @@ impl Solid {
     /// Returns the direction outwards at a point on or near the surface.
     pub(super) fn normal(&self, point: DVec3) -> DVec3 {
         match &self.form {
-            Form::Box {
-                center, half, axes, ..
-            } => {
-                let place = axes.transpose() * (point - *center);
+            Form::Box { center, half, axes } => {
+                let place = *axes * (point - *center);
                 let beyond = (place.abs() - *half).to_array();
                 let axis = (1..3).fold(
                     0,
                     |most, it| if beyond[it] > beyond[most] { it } else { most },
                 );
-                axes.col(axis) * place[axis].signum()
+                axes.row(axis) * place[axis].signum()
             }
             Form::Sphere { center, .. } => (point - *center).normalize_or(DVec3::Z),
             Form::Plane { normal, .. } => *normal,
@@ -122,18 +113,13 @@ impl Solid {
     /// Returns where a motion from a point first enters from outside, within so many times itself.
     pub(super) fn entry(&self, point: DVec3, motion: DVec3, most: f64) -> Option<Entry> {
         let entry = match &self.form {
-            Form::Box {
-                center,
-                half,
-                axes,
-                bound,
-            } => {
-                let place = point - *center;
-                let far = bound + most * motion.length();
-                if place.length_squared() > far * far * (1.0 + 1e-9) {
+            Form::Box { center, half, axes } => {
+                let (place, own) = (*axes * (point - *center), *axes * motion);
+                // Most that ask are far away.
+                if (place.abs() - *half).cmpgt(most * own.abs()).any() {
                     return None;
                 }
-                self.box_entry(place, motion, *half, axes)
+                self.box_entry(place, own, *half, motion, axes)
             }
             Form::Sphere { center, radius } => self.sphere_entry(point - *center, motion, *radius),
             Form::Plane {
@@ -161,9 +147,16 @@ impl Solid {
         is_there.then_some(0.0)
     }
 
-    fn box_entry(&self, place: DVec3, motion: DVec3, half: DVec3, axes: &DMat3) -> Option<Entry> {
-        let to_own = axes.transpose();
-        let (p, d) = ((to_own * place).to_array(), (to_own * motion).to_array());
+    /// Returns where a motion enters a box; place and motion are turned into what is the box' own.
+    fn box_entry(
+        &self,
+        place: DVec3,
+        own: DVec3,
+        half: DVec3,
+        motion: DVec3,
+        axes: &DMat3,
+    ) -> Option<Entry> {
+        let (p, d) = (place.to_array(), own.to_array());
         let (mut near, mut far, mut axis) = (f64::NEG_INFINITY, f64::INFINITY, 3);
         for k in 0..3 {
             if d[k] == 0.0 {
@@ -184,7 +177,7 @@ impl Solid {
         }
         Some(Entry {
             share: self.share(near, d[axis].abs(), motion)?,
-            normal: axes.col(axis) * -d[axis].signum(),
+            normal: axes.row(axis) * -d[axis].signum(),
         })
     }
 

@@ -13,6 +13,8 @@ pub(super) enum Phase {
     Irregular,
     /// It is being accelerated within the solid that it hit.
     Within,
+    /// It is over, and waits to be dropped with others.
+    Over,
 }
 
 /// Which particle it is: its number among those of its wave, and its wave.
@@ -71,10 +73,12 @@ pub(super) struct Emitted {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct State {
     pub frame: u32,
-    /// In the order in which they were emitted.
+    /// In the order in which they were emitted; some may be over.
     pub bodies: Vec<Body>,
     /// One for each of them.
     pub impacts: Vec<Impact>,
+    /// How many of them are over.
+    pub over: usize,
     /// One for each wave.
     pub emitted: Vec<Emitted>,
 }
@@ -85,6 +89,30 @@ impl State {
             emitted: vec![Emitted::default(); waves],
             ..Self::default()
         }
+    }
+
+    /// Returns all particles that are not over.
+    pub(super) fn alive(&self) -> impl Iterator<Item = (&Body, &Impact)> {
+        let all = self.bodies.iter().zip(&self.impacts);
+        all.filter(|(body, _)| body.phase != Phase::Over)
+    }
+
+    /// Drops those that are over if they are a quarter: dropping some moves all behind them.
+    pub(super) fn drop_over(&mut self) {
+        if 4 * self.over < self.bodies.len() || self.over == 0 {
+            return;
+        }
+        let mut kept = 0;
+        for index in 0..self.bodies.len() {
+            if self.bodies[index].phase != Phase::Over {
+                self.bodies[kept] = self.bodies[index];
+                self.impacts[kept] = self.impacts[index];
+                kept += 1;
+            }
+        }
+        self.bodies.truncate(kept);
+        self.impacts.truncate(kept);
+        self.over = 0;
     }
 
     /// Returns how much memory its particles take.

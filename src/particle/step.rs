@@ -41,7 +41,7 @@ impl Laws {
         self.go(state, old, scratch);
         if !scratch.touches.is_empty() {
             let reach = self.reach();
-            let all = state.bodies.iter().map(|body| body.position);
+            let all = state.alive().map(|(body, _)| body.position);
             let asking = scratch.touches.iter();
             let asking = asking.map(|touch| state.bodies[touch.index].position);
             scratch.neighbours.gather(asking, all, reach);
@@ -49,6 +49,7 @@ impl Laws {
                 self.respond(state, touch, &scratch.neighbours, see);
             }
         }
+        state.drop_over();
         state.frame += 1;
     }
 
@@ -84,48 +85,43 @@ impl Laws {
         }
     }
 
-    /// Moves all particles, drops those whose time is over, and lists those that hit something, or are within it.
+    /// Moves all particles, ends those whose time is over, and lists those that hit something, or are within it.
     fn go(&self, state: &mut State, old: usize, scratch: &mut Scratch) {
         let Scratch { touches, rests, .. } = scratch;
         touches.clear();
         let now = f64::from(state.frame);
-        let mut kept = 0;
-        for index in 0..state.bodies.len() {
-            let mut body = state.bodies[index];
+        for (index, body) in state.bodies.iter_mut().enumerate() {
             let rest = match index.checked_sub(old) {
                 Some(new) => rests[new],
                 None => 1.0,
             };
             let motion = rest * body.velocity;
             let meeting = match body.phase {
-                Phase::Flying | Phase::Circular => self.meeting(&body, motion),
+                Phase::Flying | Phase::Circular => self.meeting(body, motion),
                 Phase::Irregular | Phase::Within => None,
+                Phase::Over => continue,
             };
             if meeting.is_none() && body.until < now + 1.0 {
+                body.phase = Phase::Over;
+                state.over += 1;
                 continue;
             }
             let begin = body.position;
             body.position += motion;
             if let Some(Meeting { solid, entry }) = meeting {
-                let point = begin + entry.share * motion;
                 touches.push(Touch {
-                    index: kept,
+                    index,
                     solid,
-                    point,
+                    point: begin + entry.share * motion,
                     normal: entry.normal,
                     end: body.position,
                     time: now + (1.0 - rest) + entry.share * rest,
                     is_new: true,
                 });
             } else if body.phase == Phase::Within {
-                self.stay_or_leave(&mut body, &state.impacts[index], kept, touches);
+                self.stay_or_leave(body, &state.impacts[index], index, touches);
             }
-            state.bodies[kept] = body;
-            state.impacts[kept] = state.impacts[index];
-            kept += 1;
         }
-        state.bodies.truncate(kept);
-        state.impacts.truncate(kept);
     }
 
     /// Lists a particle that is still within what it hit; one that has left flies on.

@@ -203,7 +203,7 @@ fn within(scene: &Scene, last: u32, rule: Rule) -> (u64, u64) {
     let all = states(scene, last, |laws| {
         laws.waves.iter_mut().for_each(|law| law.rule = rule);
     });
-    let bodies = all.iter().flat_map(|state| &state.bodies);
+    let bodies = all.iter().flat_map(|state| state.alive().map(|it| it.0));
     let inside = bodies
         .filter(|body| solids.iter().any(|it| it.distance(body.position) < -1e-9))
         .count();
@@ -228,7 +228,7 @@ fn no_speed_takes_particles_through_a_solid() {
         let scene = changed(|wave| wave.speed = speed);
         let beyond = |sweeps: bool| {
             let all = states(&scene, 40, |laws| laws.sweeps = sweeps);
-            let bodies = all.iter().flat_map(|state| &state.bodies);
+            let bodies = all.iter().flat_map(|state| state.alive().map(|it| it.0));
             bodies.filter(|body| body.position.x > 1e-9).count()
         };
         let (swept, stepped) = (beyond(true), beyond(false));
