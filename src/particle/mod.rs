@@ -22,7 +22,7 @@ use glam::DVec3;
 
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
-use crate::scene::{LAST_FRAME, Scene};
+use crate::scene::{Collider, EmittedWave, LAST_FRAME, List, Scene};
 use history::History;
 use laws::Laws;
 pub use light::LightElement;
@@ -53,6 +53,8 @@ const STATES: f64 = 3.0;
 /// ```
 #[derive(Debug)]
 pub struct Simulation {
+    waves: List<EmittedWave>,
+    colliders: List<Collider>,
     laws: Laws,
     history: History,
     /// The state after one that is shown.
@@ -115,10 +117,22 @@ impl Simulation {
         let laws = Laws::new(scene);
         let history = History::new(laws.waves.len());
         Ok(Self {
+            waves: scene.waves.clone(),
+            colliders: scene.colliders.clone(),
             laws,
             history,
             next: None,
         })
+    }
+
+    /// Returns whether it is that of a scene, whatever frame this shows: of one that moves the same simulation then
+    /// serves all times.
+    #[must_use]
+    pub fn is_of(&self, scene: &Scene) -> bool {
+        let settings = scene.simulation_settings();
+        (settings.seed, settings.frame) == (self.laws.seed, self.laws.frame)
+            && is_same(&self.waves, &scene.waves)
+            && is_same(&self.colliders, &scene.colliders)
     }
 
     /// Returns the light of all particles at a frame, or between two: there each is on the straight way from one to the
@@ -194,6 +208,7 @@ impl Simulation {
             laws,
             history,
             next,
+            ..
         } = self;
         let before = history.at(laws, whole as u32);
         if share == 0.0 {
@@ -248,9 +263,13 @@ fn between(
     }
 }
 
+fn is_same<T: PartialEq>(one: &List<T>, other: &List<T>) -> bool {
+    one.revision() == other.revision() || one == other
+}
+
 /// Checks that the particles that live at once fit into the memory.
 fn check_memory(scene: &Scene) -> Result<()> {
-    let alive = |wave: &crate::scene::EmittedWave| {
+    let alive = |wave: &EmittedWave| {
         wave.most_rate() * (wave.flight + wave.lifetime + wave.lifetime_range + 1.0)
     };
     let all: f64 = scene.waves.iter().map(alive).sum();

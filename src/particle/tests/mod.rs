@@ -249,11 +249,19 @@ fn a_frame_is_the_same_whatever_was_asked_before() {
         let found = hash(history.at(&laws, frame));
         assert_eq!(found, expected[frame as usize - 1], "frame {frame}");
     }
+    let simulation = Simulation::new(&scene).unwrap();
+    let mut later = scene.clone();
+    later.simulation.get_or_insert_default().time = Some(9.0);
+    later.waves[0].speed *= 1.0;
+    assert!(simulation.is_of(&later));
+    later.waves[0].speed *= 1.5;
+    assert!(!simulation.is_of(&later));
     // Another seed is another simulation.
     let mut other = scene.clone();
     other.simulation.get_or_insert_default().seed = 2;
     let mut history = history::History::new(laws.waves.len());
     assert_ne!(hash(history.at(&Laws::new(&other), 70)), expected[69]);
+    assert!(!simulation.is_of(&other));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Reads a scene from TOML or JSON; every fault is reported with file, line, column and key.
 
 mod animated;
+mod collider;
 mod depth;
 mod display;
 mod document;
@@ -27,11 +28,12 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::kinds::for_each_kind;
-use super::simulation::ColliderTable;
 use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
 pub use animated::AnimatedScene;
+use collider::ColliderTable;
+pub(super) use collider::{BOX_KEYS, COLLIDER_KEYS, PLANE_KEYS, SPHERE_KEYS};
 pub(super) use depth::DEPTH_KEYS;
 use depth::DepthTable;
 use display::DisplayTable;

@@ -5,14 +5,14 @@ use super::words::*;
 use crate::image::ImageSize;
 use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
 use crate::scene::file::{
-    BLOOM_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS, TIME_KEYS,
+    BLOOM_KEYS, BOX_KEYS, COLLIDER_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS,
+    PLANE_KEYS, SPHERE_KEYS, TIME_KEYS,
 };
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
 use crate::scene::kinds::for_each_kind;
 use crate::scene::simulation::{
-    ACCELERATION_KEYS, BOX_KEYS, COLLIDER_KEYS, CONTROL_KEYS, MIXTURE_KEYS, PLANE_KEYS,
-    SIMULATION_KEYS, SPHERE_KEYS, WAVE_KEYS,
+    ACCELERATION_KEYS, CONTROL_KEYS, MIXTURE_KEYS, SIMULATION_KEYS, WAVE_KEYS,
 };
 use crate::scene::source::{LAYER_KEYS, SHARED_KEYS, SourceKind, *};
 use crate::scene::track::{NOISE_KEYS, TRACK_KEYS};

@@ -1,15 +1,9 @@
 //! What waves of particles hit: solids whose surface is a formula.
 
-use std::path::PathBuf;
-
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 
 use crate::scene::Rotation;
-use crate::scene::colors::read_color;
-use crate::scene::values::{
-    Checked, Fault, direction, finite, positive, read_some_vector, read_vector, vector,
-};
+use crate::scene::values::{Checked, direction, finite, positive, vector};
 
 /// A solid that waves of particles hit.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +53,7 @@ impl Collider {
         Self {
             shape,
             visible: true,
-            color: gray(),
+            color: GRAY,
         }
     }
 
@@ -114,165 +108,5 @@ impl Collider {
     }
 }
 
-fn gray() -> DVec3 {
-    DVec3::splat(0.25)
-}
-
-fn seen() -> bool {
-    true
-}
-
-/// A collider as a file describes it: one of its shapes.
-#[derive(Debug, Clone, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(in crate::scene) struct ColliderTable {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    r#box: Option<BoxTable>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    sphere: Option<SphereTable>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    plane: Option<PlaneTable>,
-    #[serde(default, skip_serializing)]
-    mesh: Option<PathBuf>,
-    #[serde(default = "seen")]
-    visible: bool,
-    #[serde(default = "gray", deserialize_with = "read_color")]
-    color: DVec3,
-}
-
-// What is read of `[[collider]]`.
-keys! { pub(in crate::scene) COLLIDER_KEYS;
-    box: Table("collider.box"), NONE, Otherwise("sphere or plane"), "a box";
-    sphere: Table("collider.sphere"), NONE, Otherwise("box or plane"), "a ball";
-    plane: Table("collider.plane"), NONE, Otherwise("box or sphere"), "all that lies behind a plane";
-    mesh: File, NONE, Otherwise("none"), "a mesh; not built yet, it is refused";
-    visible: Flag, NONE, Value("true"), "whether it is seen";
-    color: Color, "linear RGB", Value("[0.25, 0.25, 0.25]"), "the colour, where it is seen";
-}
-
-#[derive(Debug, Clone, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct BoxTable {
-    #[serde(default, deserialize_with = "read_vector")]
-    center: DVec3,
-    #[serde(deserialize_with = "read_vector")]
-    half: DVec3,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    rotation: Option<Rotation>,
-}
-
-// What is read of its `box`.
-keys! { pub(in crate::scene) BOX_KEYS;
-    center: VECTOR, WORLD, Value("[0, 0, 0]"), "its middle";
-    half: VECTOR, WORLD, Required, "half of its edges, each positive";
-    rotation: Table("rotate"), NONE, Otherwise("not turned"), "a turn about its middle";
-}
-
-#[derive(Debug, Clone, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct SphereTable {
-    #[serde(default, deserialize_with = "read_vector")]
-    center: DVec3,
-    radius: f64,
-}
-
-// What is read of its `sphere`.
-keys! { pub(in crate::scene) SPHERE_KEYS;
-    center: VECTOR, WORLD, Value("[0, 0, 0]"), "its middle";
-    radius: POSITIVE, WORLD, Required, "how large it is";
-}
-
-#[derive(Debug, Clone, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct PlaneTable {
-    #[serde(default, deserialize_with = "read_vector")]
-    point: DVec3,
-    #[serde(
-        default,
-        skip_serializing_if = "Option::is_none",
-        deserialize_with = "read_some_vector"
-    )]
-    normal: Option<DVec3>,
-}
-
-// What is read of its `plane`.
-keys! { pub(in crate::scene) PLANE_KEYS;
-    point: VECTOR, WORLD, Value("[0, 0, 0]"), "a point of it";
-    normal: VECTOR, NONE, Value("[0, 0, 1]"), "where it faces, of any length but zero";
-}
-
-#[cfg(feature = "files")]
-impl ColliderTable {
-    /// Makes the collider.
-    pub(in crate::scene) fn collider(&self) -> Result<Collider, Fault> {
-        if self.mesh.is_some() {
-            let message = "meshes are no colliders yet: write box = { half = [..] }, sphere = { radius = .. } or \
-                plane = { normal = [..] }";
-            return Err(Fault::new("mesh", message));
-        }
-        let shape = match (&self.r#box, &self.sphere, &self.plane) {
-            (Some(it), None, None) => ColliderShape::Box {
-                center: it.center,
-                half: it.half,
-                rotation: it.rotation,
-            },
-            (None, Some(it), None) => ColliderShape::Sphere {
-                center: it.center,
-                radius: it.radius,
-            },
-            (None, None, Some(it)) => ColliderShape::Plane {
-                point: it.point,
-                normal: it.normal.unwrap_or(DVec3::Z),
-            },
-            (None, None, None) => {
-                let message = "it has no shape: write box = { half = [1.0, 1.0, 1.0] }, sphere = { radius = 1.0 } or \
-                    plane = { normal = [0.0, 0.0, 1.0] }";
-                return Err(Fault::new("", message));
-            }
-            _ => {
-                let message = "it has several shapes, of which a collider has one: write a [[collider]] for each";
-                return Err(Fault::new("", message));
-            }
-        };
-        Ok(Collider {
-            shape,
-            visible: self.visible,
-            color: self.color,
-        })
-    }
-
-    /// Makes a collider's table as it is written.
-    pub(in crate::scene) fn of(collider: &Collider) -> Self {
-        let mut table = Self {
-            r#box: None,
-            sphere: None,
-            plane: None,
-            mesh: None,
-            visible: collider.visible,
-            color: collider.color,
-        };
-        match collider.shape {
-            ColliderShape::Box {
-                center,
-                half,
-                rotation,
-            } => {
-                table.r#box = Some(BoxTable {
-                    center,
-                    half,
-                    rotation,
-                });
-            }
-            ColliderShape::Sphere { center, radius } => {
-                table.sphere = Some(SphereTable { center, radius });
-            }
-            ColliderShape::Plane { point, normal } => {
-                table.plane = Some(PlaneTable {
-                    point,
-                    normal: Some(normal),
-                });
-            }
-        }
-        table
-    }
-}
+/// The colour of one that names none.
+pub(in crate::scene) const GRAY: DVec3 = DVec3::splat(0.25);

@@ -13,7 +13,7 @@ use super::{List, Scene};
 use crate::error::SceneError;
 
 #[cfg(feature = "files")]
-pub(super) use collider::{BOX_KEYS, COLLIDER_KEYS, ColliderTable, PLANE_KEYS, SPHERE_KEYS};
+pub(super) use collider::GRAY;
 pub use collider::{Collider, ColliderShape};
 #[cfg(feature = "files")]
 pub(crate) use pattern::MOST_SAMPLES;
