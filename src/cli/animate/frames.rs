@@ -21,8 +21,8 @@ pub fn range(arguments: &AnimateArguments, scene: &AnimatedScene) -> Result<Rang
     }
     let Some(span) = scene.span() else {
         return Err(Error::Unsupported(match scene.is_animated() {
-            true => "--frames A..B is needed: all that moves in the scene is noise, or waves of particles, which \
-                     have no end; or give it a [time] loop"
+            true => "--frames A..B is needed: all that moves in the scene is noise, which has no end, or waves of \
+                     particles; or give it a [time] loop"
                 .to_owned(),
             false => "--frames A..B is needed: nothing moves in the scene, no value is a track; energywave render \
                       draws one picture"
