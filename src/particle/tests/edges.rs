@@ -133,3 +133,52 @@ fn a_particle_that_touches_two_solids_enters_neither() {
     };
     assert_eq!(within(&wide, 120, Rule::CORRECTED).1, 0);
 }
+
+#[test]
+fn no_solids_of_any_shape_and_place_let_particles_in() {
+    let (mut hits, mut again) = (0, 0);
+    for seed in 0..20 {
+        // Numbers in [-1,1), one after another.
+        let mut count = 0;
+        let mut next = || {
+            count += 1;
+            let [unit, ..] = random::units(seed, count, 9, random::Purpose::Emission);
+            2.0 * unit - 1.0
+        };
+        let mut vector = |size: f64| size * DVec3::new(next(), next(), next());
+        let mut scene = base();
+        scene.colliders.clear();
+        for _ in 0..6 {
+            let (center, half) = (vector(18.0), vector(9.0).abs() + 0.1);
+            scene.colliders.push(Collider::sphere(center, half.x));
+            scene.colliders.push(Collider::new(ColliderShape::Box {
+                center: vector(18.0),
+                half,
+                rotation: (half.y > 3.0).then(|| Rotation {
+                    axis: vector(1.0),
+                    angle: vector(180.0).x,
+                }),
+            }));
+        }
+        let below = vector(0.1) + DVec3::Z;
+        scene
+            .colliders
+            .push(Collider::plane(-20.0 * DVec3::Z, below));
+        scene.waves.clear();
+        for _ in 0..3 {
+            let mut origin = vector(1.0).normalize_or(DVec3::Z) * 45.0;
+            origin.z = origin.z.abs() + 10.0;
+            let mut wave = EmittedWave::new(origin, vector(10.0) - origin);
+            wave.radius = 8.0;
+            wave.speed = vector(20.0).x.abs();
+            scene.waves.push(wave);
+        }
+        let (_, inside) = within(&scene, 70, Rule::CORRECTED);
+        assert_eq!(inside, 0, "scene {seed}");
+        let contacts = Simulation::new(&scene).unwrap().contacts(0..=69).unwrap();
+        hits += contacts.len();
+        again += contacts.iter().filter(|it| !it.is_first).count();
+    }
+    println!("{hits} contacts, of which {again} are not the first of their particle");
+    assert!(hits > 50_000 && again > 10_000);
+}
