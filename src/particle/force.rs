@@ -98,7 +98,7 @@ impl Laws {
             time: touch.time * self.frame,
             frame: touch.time,
             point: touch.point,
-            normal: touch.normal,
+            normal: touch.normal + DVec3::ZERO, // no -0.0 is told
             speed: body.velocity.length(),
             wave: body.name.wave as usize,
             particle: body.name.id,

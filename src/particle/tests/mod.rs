@@ -276,6 +276,7 @@ fn contacts_are_told_once_and_are_those_of_the_frames() {
     assert!(simulation.contacts(0..=23).unwrap().is_empty() && all.len() > 1400);
     for contact in &all {
         assert!(contact.point.x.abs() < 1e-12 && contact.normal == -DVec3::X);
+        assert!(contact.normal.y.is_sign_positive() && contact.normal.z.is_sign_positive());
         assert!((contact.time - contact.frame / 60.0).abs() < 1e-12 && contact.is_first);
         // It has flown 50 at a speed of 2, since it was emitted in a frame of 20.
         let emitted = contact.frame - 25.0;

@@ -44,7 +44,7 @@ pub struct SimulationSettings {
 
 // What is read of `[simulation]`.
 keys! { pub(in crate::scene) SIMULATION_KEYS;
-    frame: POSITIVE, "seconds", Value("0.016666666666666666"), "how long a frame of the simulation lasts";
+    frame: POSITIVE, "seconds", Otherwise("1/60"), "how long a frame of the simulation lasts";
     seed: WHOLE, NONE, Value("1"), "which random numbers";
     time: from_to(0.0, LAST_FRAME), "frames", Otherwise("that of the scene's time"), "which frame is shown";
 }
