@@ -34,11 +34,14 @@ pub mod keys;
 pub(crate) mod kinds;
 mod light_group;
 mod list;
+mod metaballs;
+mod points;
 #[cfg(feature = "files")]
 mod preset;
 mod random;
 mod ray;
 mod reduction;
+mod seen;
 mod source;
 mod stamp;
 mod track;
@@ -60,9 +63,13 @@ pub use integration::{
     Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
 };
 pub use list::List;
+pub(crate) use metaballs::{AMBIENT, LAMP};
+pub use metaballs::{MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs};
+pub use points::{Lattice, PointList, PointSize};
 #[cfg(feature = "files")]
 pub use preset::Preset;
 pub use ray::{Ray, ViewPlane};
+pub(crate) use seen::SeenSurfaces;
 pub use source::*;
 pub(crate) use stamp::SourcesStamp;
 pub use track::{Interpolation, Track, TrackLoop, TrackNoise, TrackValue};
@@ -93,6 +100,8 @@ macro_rules! define_scene {
             /// times as many depths across and down: pixels at the edges of things are then the mean of the light
             /// before each surface.
             pub depth: Option<DepthImage>,
+            /// Surfaces, which hide the light behind them too.
+            pub metaballs: List<Metaballs>,
             $($(#[$doc])* pub $list: List<$Type>,)*
         }
 
@@ -108,6 +117,7 @@ macro_rules! define_scene {
                     integration: Integration::default(),
                     display: Display::default(),
                     depth: None,
+                    metaballs: List::new(),
                     $($list: List::new(),)*
                 }
             }

@@ -10,6 +10,8 @@ mod animate; // draws frames of scenes that move
 mod bad_animations; // has frames refused that cannot be
 mod bad_displays; // has displays refused that no file can hold
 mod bad_looks; // has every fault of layers named with its place
+#[cfg(unix)] // as cli
+mod bad_metaballs; // has every fault of surfaces and particles named
 mod bad_scenes;
 mod bad_series; // has every fault of a scene file named with its place
 mod bad_tracks;

@@ -9,6 +9,7 @@ mod integration;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
+mod metaballs;
 mod moving;
 mod numbers;
 mod pieces;
@@ -41,6 +42,8 @@ use groups::{GroupTable, Groups};
 pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
 pub use integration::MethodKeys;
+use metaballs::MetaballsTable;
+pub(super) use metaballs::{LATTICE_KEYS, METABALLS_KEYS};
 use scan::UNIT_COUNT;
 pub use span::SceneSpan;
 pub(super) use time::TIME_KEYS;
@@ -74,6 +77,8 @@ macro_rules! define_scene_file {
             depth: Option<DepthTable>,
             #[serde(default, skip_serializing)]
             time: TimeTable,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            metaballs: Vec<MetaballsTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
             #[serde(default, skip_serializing)]
             group: Vec<GroupTable>,
@@ -89,7 +94,7 @@ macro_rules! define_scene_file {
         }
 
         impl SceneFile {
-            /// Returns the scene without its depth image.
+            /// Returns the scene without its depth image, and without surfaces.
             fn scene(&mut self) -> Scene {
                 Scene {
                     camera: self.camera.clone(),
@@ -99,6 +104,7 @@ macro_rules! define_scene_file {
                     integration: self.integration.integration(),
                     display: self.display.display(),
                     depth: None,
+                    metaballs: List::new(),
                     $($list: std::mem::take(&mut self.$kind),)*
                 }
             }
@@ -145,7 +151,12 @@ macro_rules! define_scene_file {
             }
 
             /// Makes a file's scene as it is written.
-            fn of(scene: &Scene, depth: Option<DepthTable>, display: DisplayTable) -> Self {
+            fn of(
+                scene: &Scene,
+                depth: Option<DepthTable>,
+                display: DisplayTable,
+                metaballs: Vec<MetaballsTable>,
+            ) -> Self {
                 Self {
                     camera: scene.camera.clone(),
                     image: scene.image,
@@ -155,6 +166,7 @@ macro_rules! define_scene_file {
                     display,
                     depth,
                     time: TimeTable::default(),
+                    metaballs,
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
                 }
@@ -191,10 +203,18 @@ impl SceneFile {
         self.display = other.display;
         self.depth = other.depth;
         self.time = other.time;
+        let mut metaballs = other.metaballs;
+        for (new, old) in metaballs.iter_mut().zip(&self.metaballs) {
+            new.share(old);
+        }
+        self.metaballs = metaballs;
     }
 
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
     fn exposure_of_brightest(mut self) -> Option<f64> {
+        if !self.metaballs.is_empty() {
+            return None;
+        }
         let mut scene = self.scene();
         Groups::add_to(&mut scene, std::mem::take(&mut self.group)).ok()?;
         scene.exposure_of_brightest()
@@ -217,6 +237,9 @@ impl SceneFile {
         self.time.check().map_err(|fault| fault.of("time"))?;
         let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
         groups.check(&scene)?;
+        for (index, table) in self.metaballs.iter().enumerate() {
+            scene.metaballs.push(table.open(index, folder)?);
+        }
         self.display.fit_exposure(&mut scene);
         adjust(&mut scene, &self.integration.keys())?;
         if let (Some(depth), None) = (&self.depth, &scene.depth) {

@@ -46,7 +46,7 @@ pub(super) fn plain(language: Language, key: String, message: &str) -> (String, 
         return (table.to_owned(), one_only(language, table));
     }
     let last = key.rsplit('.').next().unwrap_or_default();
-    let is_unit = UNITS.contains(&last);
+    let is_unit = UNITS.contains(&last) || last == "metaballs";
     if is_unit && message.contains("invalid type") && message.ends_with("expected a sequence") {
         let words = several(language, &key, last);
         return (key, words);

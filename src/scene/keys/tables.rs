@@ -5,7 +5,8 @@ use super::words::*;
 use crate::image::ImageSize;
 use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
 use crate::scene::file::{
-    BLOOM_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS, TIME_KEYS, TRACK_KEYS,
+    BLOOM_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS, LATTICE_KEYS,
+    METABALLS_KEYS, TIME_KEYS, TRACK_KEYS,
 };
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
@@ -196,12 +197,24 @@ pub fn tables() -> Vec<Table> {
         keys: PLACED,
     });
     tables.push(group);
+    tables.push(Table::new(
+        "metaballs",
+        Many,
+        "A surface where the summed field of particles reaches a threshold; it hides the light",
+        METABALLS_KEYS,
+    ));
     tables.extend([
         Table::new(
             "bloom",
             Inside,
             "Light of a picture that is spread around what is bright",
             BLOOM_KEYS,
+        ),
+        Table::new(
+            "lattice",
+            Inside,
+            "Particles in layers of columns and rows, one layer on the other, about the origin",
+            LATTICE_KEYS,
         ),
         Table::new(
             "layers",

@@ -33,7 +33,9 @@ fn sample(key: &Key) -> String {
         Form::Numbers(least, _) => {
             format!("[{}]", ["1.5", "2.5", "0.5"][..least as usize].join(", "))
         }
-        Form::Vectors(least, _) => format!("[{}]", vec!["[1, 2, 3]"; least as usize].join(", ")),
+        Form::Vectors(least, _) => {
+            format!("[{}]", vec!["[1, 2, 3]"; least.max(1) as usize].join(", "))
+        }
         Form::Colors(least) => format!("[{}]", vec!["\"#ff8800\""; least as usize].join(", ")),
         Form::TrackValue => "0.5".to_owned(),
         Form::TrackValues(least) => format!("[{}]", vec!["0.5"; least as usize].join(", ")),
