@@ -21,27 +21,42 @@ float slab_begin(__global const Surface *const surface, const uint slab) {
 }
 
 // Returns the column, or row, of cells that a place in rays lies in; the first and the last are the border.
-uint cell_at(const float place, const float width, const uint count) {
-    return count == 1u ? 0u : (uint)clamp(floor(place / width) + 1.0f, 0.0f, (float)(count - 1u));
+uint cell_at(const float place, const float inverse_width, const uint count) {
+    return (uint)clamp(floor(place * inverse_width) + 1.0f, 0.0f, (float)(count - 1u));
+}
+
+// Says whether a position is more than a radius away from all rays: from the planes of the outermost.
+bool is_beside(const Sight *const sight, __global const Surface *const surface, const float3 p) {
+    const float z = sight->is_parallel ? 1.0f : p.z;
+    const float2 first = (float2)(sight->first_x, sight->first_y);
+    const float2 last = fma((float2)(sight->step_x, sight->step_y),
+                            (float2)((float)(sight->width - 1u), (float)(sight->height - 1u)), first);
+    const float most = 1.0001f * surface->radius;
+    const float2 before = first * z - p.xy, beyond = p.xy - last * z;
+    const float2 at_first = sight->is_parallel ? (float2)(most) : most * sqrt(fma(first, first, 1.0f));
+    const float2 at_last = sight->is_parallel ? (float2)(most) : most * sqrt(fma(last, last, 1.0f));
+    return any(before > at_first) || any(beyond > at_last);
 }
 
 uint cell_of(const Sight *const sight, __global const Surface *const surface, __global const Slab *const slabs,
              const float3 p) {
-    // What lies farther behind the eye reaches no ray.
-    if (p.z < -surface->radius)
+    // What lies farther behind the eye, or beside the picture, reaches no ray.
+    if (p.z < -surface->radius || is_beside(sight, surface, p))
         return NO_CELL;
     __global const Slab *const slab = slabs + surface->first_slab + slab_at(surface, p.z);
     const float scale = sight->is_parallel ? 1.0f : 1.0f / p.z; // a slab next to the eye has one cell
     const float column = (p.x * scale - sight->first_x) / sight->step_x;
     const float row = (p.y * scale - sight->first_y) / sight->step_y;
-    return slab->first_cell + cell_at(row, slab->width, slab->rows) * slab->columns +
-           cell_at(column, slab->width, slab->columns);
+    return slab->first_cell + cell_at(row, slab->inverse_width, slab->rows) * slab->columns +
+           cell_at(column, slab->inverse_width, slab->columns);
 }
 
-// A rectangle of rays, by the centres of the outermost, and the steepest slopes of any.
+// A rectangle of rays, by the centres of the outermost, and by how much farther a radius reaches beside its steepest
+// rays than beside the axis of view: what is seen at a slant is seen wider.
 typedef struct {
     float left, right, top, bottom;
-    float steepest_x, steepest_y;
+    float slant_x, slant_y;
+    float steepest2; // the squared slope of the steepest ray, at most
 } Block;
 
 Block block_of(const Sight *const sight, const uint column, const uint row, const uint columns, const uint rows) {
@@ -50,12 +65,17 @@ Block block_of(const Sight *const sight, const uint column, const uint row, cons
     block.top = (float)row;
     block.right = (float)min(column + columns - 1u, sight->width - 1u);
     block.bottom = (float)min(row + rows - 1u, sight->height - 1u);
-    const float x0 = fma(block.left, sight->step_x, sight->first_x),
-                x1 = fma(block.right, sight->step_x, sight->first_x);
-    const float y0 = fma(block.top, sight->step_y, sight->first_y),
-                y1 = fma(block.bottom, sight->step_y, sight->first_y);
-    block.steepest_x = max(fabs(x0), fabs(x1));
-    block.steepest_y = max(fabs(y0), fabs(y1));
+    block.slant_x = block.slant_y = 1.0f;
+    block.steepest2 = 0.0f;
+    if (sight->is_parallel)
+        return block;
+    const float2 first = (float2)(sight->first_x, sight->first_y), step = (float2)(sight->step_x, sight->step_y);
+    const float2 low = fma((float2)(block.left, block.top), step, first);
+    const float2 high = fma((float2)(block.right, block.bottom), step, first);
+    const float2 steepest = max(fabs(low), fabs(high));
+    const float2 slant = sqrt(fma(steepest, steepest, 1.0f));
+    block.slant_x = slant.x, block.slant_y = slant.y;
+    block.steepest2 = dot(steepest, steepest);
     return block;
 }
 
@@ -69,23 +89,18 @@ typedef struct {
 
 // Returns the cells of a slab in which particles are that come within a radius of a ray of a block: of the plane of a
 // column of rays, by whose slope the distance to it is seen.
-Cells cells_near(const Sight *const sight, __global const Surface *const surface, __global const Slab *const slab,
-                 const uint number, const Block *const block) {
-    float beside_x = surface->radius / sight->step_x, beside_y = surface->radius / sight->step_y;
-    if (!sight->is_parallel) {
-        const float z = max(slab_begin(surface, number), 1e-30f);
-        beside_x *= sqrt(fma(block->steepest_x, block->steepest_x, 1.0f)) / z;
-        beside_y *= sqrt(fma(block->steepest_y, block->steepest_y, 1.0f)) / z;
-    }
+Cells cells_near(__global const Slab *const slab, const Block *const block) {
+    float beside_x = fma(slab->beside_x, block->slant_x, ROUNDING);
+    float beside_y = fma(slab->beside_y, block->slant_y, ROUNDING);
 #ifdef NARROW_CELLS
     // Spoiled.
-    beside_x -= slab->width, beside_y -= slab->width;
+    beside_x -= 1.0f / slab->inverse_width, beside_y -= 1.0f / slab->inverse_width;
 #endif
-    beside_x = fma(beside_x, 1.0001f, ROUNDING), beside_y = fma(beside_y, 1.0001f, ROUNDING);
-    const Cells cells = {cell_at(block->left - beside_x, slab->width, slab->columns),
-                         cell_at(block->right + beside_x, slab->width, slab->columns),
-                         cell_at(block->top - beside_y, slab->width, slab->rows),
-                         cell_at(block->bottom + beside_y, slab->width, slab->rows)};
+    const float inverse_width = slab->inverse_width;
+    const Cells cells = {cell_at(block->left - beside_x, inverse_width, slab->columns),
+                         cell_at(block->right + beside_x, inverse_width, slab->columns),
+                         cell_at(block->top - beside_y, inverse_width, slab->rows),
+                         cell_at(block->bottom + beside_y, inverse_width, slab->rows)};
     return cells;
 }
 

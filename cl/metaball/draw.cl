@@ -74,11 +74,10 @@ INLINE float3v draw_block(Search *const search, const uint surface_count, __glob
     return light;
 }
 
-Search search_of(const Sight *const sight, __global const uint *const cells, __global const Particle *const particles,
-                 const Rays *const rays, const uint column, const uint row) {
+Search search_of(const Sight *const sight, const Rays *const rays, const uint column, const uint row) {
     Search search;
     search.sight = sight;
-    search.cells = cells, search.particles = particles, search.rays = rays;
+    search.rays = rays;
     search.block = block_of(sight, column, row, BLOCK_COLUMNS, BLOCK_ROWS);
     const Block *const block = &search.block;
     const float middle_column = 0.5f * (block->left + block->right), middle_row = 0.5f * (block->top + block->bottom);
@@ -86,8 +85,7 @@ Search search_of(const Sight *const sight, __global const uint *const cells, __g
     search.middle_y = fma(middle_row, sight->step_y, sight->first_y);
     search.spread =
         0.501f * hypot((block->right - block->left) * sight->step_x, (block->bottom - block->top) * sight->step_y);
-    const float steepest2 = block->steepest_x * block->steepest_x + block->steepest_y * block->steepest_y;
-    search.longest = sight->is_parallel ? 1.0f : sqrt(1.0f + steepest2);
+    search.longest = sqrt(1.0f + block->steepest2);
     return search;
 }
 
@@ -130,6 +128,7 @@ __kernel void draw_surfaces(const Sight sight, __global const Surface *const res
                             const uint surface_count, __global const Slab *const restrict slabs,
                             __global const uint *const restrict cells,
                             __global const Particle *const restrict particles,
+                            __global const float *const restrict planes, const uint plane,
                             __global const uint2 *const restrict squares, __global const float *const restrict depths,
                             const uint first_unit, const uint end_unit, __global float *const restrict lengths,
                             __global float4 *const restrict light) {
@@ -151,7 +150,8 @@ __kernel void draw_surfaces(const Sight sight, __global const Surface *const res
             const uintv inside_x = min(columns, (uintv)(sight.width - 1u));
             const uintv inside_y = min(rows, (uintv)(sight.height - 1u));
             const Rays rays = rays_at(&sight, inside_x, inside_y);
-            Search search = search_of(&sight, cells, particles, &rays, column, row);
+            Search search = search_of(&sight, &rays, column, row);
+            search.cells = cells, search.particles = particles, search.planes = planes, search.plane = plane;
             const floatv given = given_lengths(&sight, inside_x, inside_y, depths);
             March march;
             march.limit = sight.is_along_axis ? given * rays.per_z : given;

@@ -12,15 +12,6 @@ typedef struct {
     floatv field, slope, growth;
 } Sums;
 
-// Which kernels the surfaces have: known when the program is built, unless they have both.
-#if defined(CONES) && defined(SMOOTH)
-#define IS_SMOOTH(surface) ((surface)->is_smooth)
-#elif defined(SMOOTH)
-#define IS_SMOOTH(surface) true
-#else
-#define IS_SMOOTH(surface) false
-#endif
-
 #define TINY 1e-30f
 
 // Returns 1 / sqrt(x), x >= 0.
@@ -29,11 +20,10 @@ floatv inverse_root(const floatv x) {
 }
 
 // Adds a particle's field at lengths s, and its bound up to `end`.
-INLINE void add_field(Sums *const sums, __global const Particle *const particle, const floatv at, const floatv d2,
-                      const floatv s, const floatv end, const bool is_smooth) {
-    const float radius2 = particle->radius * particle->radius;
-    const floatv u = s - at, chord2 = radius2 - d2;
-    const floatv r2 = fma(u, u, d2);
+INLINE void add_field(Sums *const sums, __global const Particle *const particle, const Near *const near,
+                      const uint place, const floatv s, const floatv end, const bool is_smooth) {
+    const floatv u = s - near->at[place];
+    const floatv r2 = fma(u, u, near->d2[place]);
     if (is_smooth) {
         const float inverse2 = particle->inverse_radius * particle->inverse_radius;
         const floatv left = max(fma(r2, splat(-inverse2), splat(1.0f)), splat(0.0f));
@@ -47,11 +37,21 @@ INLINE void add_field(Sums *const sums, __global const Particle *const particle,
         sums->field = fma(weighted, left, sums->field);
         sums->slope = fma(weighted * u, inverse_r * (-2.0f * particle->inverse_radius), sums->slope);
     }
-    // The field ends behind s, and begins before the end: half its chord is the root of chord2.
-    const floatv to_end = at - end;
-    const intv meets = (chord2 > 0.0f) & (u * fabs(u) < chord2) & (to_end * fabs(to_end) < chord2);
-    const floatv bound = particle->growth * (is_smooth ? chord2 * chord2 : chord2);
-    sums->growth += select(splat(0.0f), bound, meets);
+    const intv meets = (near->leave[place] > s) & (near->enter[place] < end);
+    sums->growth += select(splat(0.0f), near->growth[place], meets);
+}
+
+// Returns what the field cannot exceed between two lengths: the most of all that meet the stretch.
+INLINE floatv most_between(const Search *const search, Window *const window, Near *const near, const floatv s,
+                           const floatv end) {
+    floatv most = splat(0.0f);
+    for (bool has_part = first_part(search, window, near); has_part; has_part = next_part(search, window, near))
+        for (uint number = 0u; number < near->count; ++number) {
+            const uint place = (near->begin + number) % ROOM;
+            const intv meets = (near->leave[place] > s) & (near->enter[place] < end);
+            most += select(splat(0.0f), near->most[place], meets);
+        }
+    return most;
 }
 
 // Sums the particles of a window at lengths s, and bounds up to `end`.
@@ -63,7 +63,7 @@ INLINE Sums field_along(const Search *const search, Window *const window, Near *
         for (uint number = 0u; number < near->count; ++number) {
             const uint place = (near->begin + number) % ROOM;
             __global const Particle *const particle = search->particles + near->particle[place];
-            add_field(&sums, particle, near->at[place], near->d2[place], s, end, is_smooth);
+            add_field(&sums, particle, near, place, s, end, is_smooth);
         }
     return sums;
 }

@@ -30,6 +30,11 @@ INLINE intv march_exactly(const Search *const search, Window *const window, Near
     const floatv none = splat(0.0f);
     intv found = (intv)(0);
     intv goes_on = march->is_open & (march->s < end);
+#ifndef STEP_BEYOND
+    const intv is_empty = most_between(search, window, near, march->s, end) < threshold * (1.0f - FIELD_ERROR);
+    march->s = select(march->s, end, goes_on & is_empty);
+    goes_on &= ~is_empty;
+#endif
     while (any_lane(goes_on)) {
         const Sums sums = field_along(search, window, near, march->s, end);
         const floatv missing = threshold - sums.field;
@@ -44,7 +49,7 @@ INLINE intv march_exactly(const Search *const search, Window *const window, Near
         const floatv falls = (root - sums.slope) / (2.0f * growth);
         const floatv step = max(select(falls, grows, sums.slope > 0.0f), LENGTH_ERROR * march->s);
 #ifdef STEP_BEYOND
-        // Spoiled: behind the end are particles that the bound does not know.
+        // Spoiled: behind the end are particles that the bound does not know. Nor is an empty stretch passed at once.
         const floatv next = select(march->s + step, end, sums.growth <= 0.0f);
 #else
         const floatv next = select(min(march->s + step, end), end, sums.growth <= 0.0f);

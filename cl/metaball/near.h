@@ -6,11 +6,20 @@
 #include "../roots.h"
 #include "cells.h"
 
+// Which kernels the surfaces have: known when the program is built, unless they have both.
+#if defined(CONES) && defined(SMOOTH)
+#define IS_SMOOTH(surface) ((surface)->is_smooth)
+#elif defined(SMOOTH)
+#define IS_SMOOTH(surface) true
+#else
+#define IS_SMOOTH(surface) false
+#endif
+
 // Particles that are kept, a power of two.
 #if LANES == 1
 #define ROOM 16u
 #else
-#define ROOM 256u
+#define ROOM 128u
 #endif
 
 // Columns and rows of a block of rays that are carried side by side.
@@ -86,7 +95,10 @@ typedef struct {
     uint begin, count;
     uint of_slab[8];
     uint particle[ROOM];
-    floatv at[ROOM], d2[ROOM];
+    floatv at[ROOM], d2[ROOM];       // see Passing
+    floatv enter[ROOM], leave[ROOM]; // where the rays come into its field, and leave it
+    floatv growth[ROOM];             // the bound of its field's growth
+    floatv most[ROOM];               // the most of its field on the rays
 } Near;
 
 // A block of rays, one in every lane, and what it looks for particles in.
@@ -96,6 +108,8 @@ typedef struct {
     __global const Slab *slabs;
     __global const uint *cells;
     __global const Particle *particles;
+    __global const float *planes; // x, y, z and radius of all particles, each `plane` numbers
+    uint plane;
     const Rays *rays;
     Block block;
     float middle_x, middle_y, spread; // slope, or offset, of the block's middle, and how far its rays are from that
@@ -111,34 +125,67 @@ typedef struct {
     uint at, end; // particles of a row of cells
 } Cursor;
 
-// Says whether any ray of a block may come within the radius of a particle: seen in the plane across the axis of view
-// that the particle lies in, where rays are closest to it at a slant.
-bool may_be_near(const Search *const search, __global const Particle *const particle) {
-    const float z = search->sight->is_parallel ? 1.0f : particle->z;
-    const float x = fma(search->middle_x, z, -particle->x), y = fma(search->middle_y, z, -particle->y);
-    const float radius = particle->radius * search->surface->wider;
-    const float most = fma(radius, search->longest, search->spread * fabs(z));
-    return fma(x, x, y * y) <= most * most;
+// Says of particles, one in every lane, whether any ray of the block may come within their radius: seen in the plane
+// across the axis of view that a particle lies in, where rays are closest to it at a slant.
+INLINE intv may_be_near(const Search *const search, const uint at, const uint end) {
+    __global const float *const first = search->planes + at;
+    const floatv z = load_lanes(first + 2u * search->plane), radius = load_lanes(first + 3u * search->plane);
+    const floatv depth = search->sight->is_parallel ? splat(1.0f) : z;
+    const floatv x = fma(splat(search->middle_x), depth, -load_lanes(first));
+    const floatv y = fma(splat(search->middle_y), depth, -load_lanes(first + search->plane));
+    const floatv most = fma(radius, splat(search->longest), search->spread * fabs(depth));
+    return (fma(x, x, y * y) <= most * most) & (at + LANE_NUMBERS < end);
+}
+
+// Adds a particle if a ray comes within its radius; there must be room.
+INLINE void add_particle(const Search *const search, const uint number, Near *const near, const uint slab) {
+    __global const Particle *const particle = search->particles + number;
+    const Passing it = passing(search->rays, particle);
+    const float wide = particle->radius * search->surface->wider;
+    if (!any_lane(it.d2 < wide * wide))
+        return;
+    const uint place = (near->begin + near->count) % ROOM;
+    const floatv chord2 = max(particle->radius * particle->radius - it.d2, 0.0f), half_chord = sqrt(chord2);
+    near->particle[place] = number;
+    near->at[place] = it.at, near->d2[place] = it.d2;
+    near->enter[place] = it.at - half_chord, near->leave[place] = it.at + half_chord;
+    const floatv share2 = min(it.d2 * (particle->inverse_radius * particle->inverse_radius), 1.0f);
+    const floatv left = IS_SMOOTH(search->surface) ? 1.0f - share2 : 1.0f - sqrt(share2);
+    near->most[place] = particle->weight * left * left * (IS_SMOOTH(search->surface) ? left : splat(1.0f));
+    near->growth[place] = particle->growth * (IS_SMOOTH(search->surface) ? chord2 * chord2 : chord2);
+    ++near->count, ++near->of_slab[slab % 8u];
+}
+
+// Adds particles of a row of cells. Returns whether there was room.
+INLINE bool add_row(const Search *const search, Cursor *const cursor, Near *const near) {
+    for (; cursor->at < cursor->end; cursor->at += LANES) {
+        const intv is_near = may_be_near(search, cursor->at, cursor->end);
+        if (!any_lane(is_near))
+            continue;
+        int flags[LANES];
+#if LANES == 1
+        flags[0] = is_near;
+#else
+        JOIN(vstore, LANES)(is_near, 0, flags);
+#endif
+        for (uint lane = 0u; lane < LANES; ++lane) {
+            if (!flags[lane])
+                continue;
+            if (near->count == ROOM) {
+                cursor->at += lane;
+                return false;
+            }
+            add_particle(search, cursor->at + lane, near, cursor->open);
+        }
+    }
+    return true;
 }
 
 // Adds particles until the search is over, or there is no room. Returns whether it is over.
-bool add_particles(const Search *const search, Cursor *const cursor, Near *const near) {
+INLINE bool add_particles(const Search *const search, Cursor *const cursor, Near *const near) {
     for (;;) {
-        for (; cursor->at < cursor->end; ++cursor->at) {
-            __global const Particle *const particle = search->particles + cursor->at;
-            if (!may_be_near(search, particle))
-                continue;
-            const Passing it = passing(search->rays, particle);
-            const float radius = particle->radius * search->surface->wider;
-            if (!any_lane(it.d2 < radius * radius))
-                continue;
-            if (near->count == ROOM)
-                return false;
-            const uint place = (near->begin + near->count) % ROOM;
-            near->particle[place] = cursor->at;
-            near->at[place] = it.at, near->d2[place] = it.d2;
-            ++near->count, ++near->of_slab[cursor->open % 8u];
-        }
+        if (!add_row(search, cursor, near))
+            return false;
         __global const Slab *slab = search->slabs + cursor->open;
         if (cursor->row > cursor->cells.bottom) {
             if (cursor->slab == cursor->last_slab)
@@ -146,7 +193,7 @@ bool add_particles(const Search *const search, Cursor *const cursor, Near *const
             cursor->open = cursor->slab++;
             slab = search->slabs + cursor->open;
             near->of_slab[cursor->open % 8u] = 0u;
-            cursor->cells = cells_near(search->sight, search->surface, slab, cursor->open, &search->block);
+            cursor->cells = cells_near(slab, &search->block);
             cursor->row = cursor->cells.top;
         }
         const uint begin = slab->first_cell + cursor->row * slab->columns;

@@ -133,7 +133,8 @@ Particle particle_of(const Sight *const sight, __global const Surface *const sur
 __kernel void sort_cells(const Sight sight, __global const Surface *const restrict surfaces, const uint surface_count,
                          __global const Point *const restrict points, __global const uint *const restrict cells,
                          const uint cell_count, __global uint *const restrict order,
-                         __global Particle *const restrict particles) {
+                         __global Particle *const restrict particles, __global float *const restrict planes,
+                         const uint plane) {
     const uint first = get_global_id(0) * CHUNK;
     uint number = 0u;
     for (uint cell = first; cell < min(first + CHUNK, cell_count); ++cell) {
@@ -146,7 +147,11 @@ __kernel void sort_cells(const Sight sight, __global const Surface *const restri
             const uint point = order[place];
             while (point >= surfaces[number].first_point + surfaces[number].point_count)
                 ++number; // cells and points have the order of their surfaces
-            particles[place] = particle_of(&sight, surfaces + number, points + point);
+            const Particle particle = particle_of(&sight, surfaces + number, points + point);
+            particles[place] = particle;
+            planes[place] = particle.x, planes[plane + place] = particle.y;
+            planes[2u * plane + place] = particle.z;
+            planes[3u * plane + place] = particle.radius * surfaces[number].wider;
         }
     }
 }
@@ -167,7 +172,7 @@ __kernel void find_slabs(const Sight sight, __global const Surface *const restri
         const uint last = slab->first_cell + slab->columns * slab->rows - 1u;
         if (cells[last] == cell_begin(cells, slab->first_cell))
             continue;
-        const Cells near = cells_near(&sight, surface, slab, at, &block);
+        const Cells near = cells_near(slab, &block);
         bool has_any = false;
         for (uint line = near.top; line <= near.bottom && !has_any; ++line) {
             const uint begin = slab->first_cell + line * slab->columns;

@@ -47,8 +47,9 @@ CHECK_SIZE(Surface, SIZEOF_SURFACE);
 // A slab of depths: a grid of cells, squares of rays, with a border of cells for what lies beside the picture.
 typedef struct {
     uint first_cell;
-    uint columns, rows; // 1: there is one cell, next to the eye
-    float width;        // of a cell, rays
+    uint columns, rows;       // 1: there is one cell, next to the eye
+    float inverse_width;      // of a cell, which is so many rays wide
+    float beside_x, beside_y; // rays on the axis of view to which the radius of the surface reaches, at most
 } Slab;
 CHECK_SIZE(Slab, SIZEOF_SLAB);
 

@@ -9,6 +9,7 @@ mod sources;
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::time::Duration;
 
 use opencl3::event::Event;
 
@@ -16,7 +17,7 @@ use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{
-    Argument, Compute, DeviceBuffer, Handle, Kernel, Pixel, RendererOptions, Uploaded,
+    Argument, Compute, DeviceBuffer, DeviceForm, Handle, Kernel, Pixel, RendererOptions, Uploaded,
     UploadedShared, run_time,
 };
 use crate::scene::{Scene, SeenSurfaces};
@@ -30,6 +31,10 @@ const CHUNK: u32 = 256;
 
 /// Work-items in a group, which share nothing; of a CPU few enough that all cores are busy to the end.
 const GROUP: usize = 16;
+const GPU_GROUP: usize = 64;
+
+/// Rays, or particles, that a work-item carries side by side.
+const MOST_LANES: usize = 16;
 
 /// Units of rays of a launch: desktop GPUs kill launches of seconds.
 const UNITS: u32 = 1 << 16;
@@ -51,10 +56,14 @@ pub(crate) struct Surfaces {
     cell_of_point: Option<DeviceBuffer<u32>>,
     order: Option<DeviceBuffer<u32>>,
     particles: Option<DeviceBuffer<Particle>>,
+    /// Places and radii of particles in their cells, each in a plane of its own.
+    planes: Option<DeviceBuffer<f32>>,
     squares: Option<DeviceBuffer<[u32; 2]>>,
     lengths: Option<DeviceBuffer<f32>>,
     light: Option<DeviceBuffer<Pixel>>,
     under_way: Vec<Handle<Event>>,
+    /// How many of those sort particles, and how long they took.
+    sorting: (usize, Duration),
     cost: FrameCost,
 }
 
@@ -75,10 +84,12 @@ impl Surfaces {
             cell_of_point: None,
             order: None,
             particles: None,
+            planes: None,
             squares: None,
             lengths: None,
             light: None,
             under_way: Vec::new(),
+            sorting: (0, Duration::ZERO),
             cost: FrameCost::default(),
         }
     }
@@ -86,6 +97,12 @@ impl Surfaces {
     /// Returns what the last frame cost.
     pub(crate) fn cost(&self) -> FrameCost {
         self.cost
+    }
+
+    /// Returns how long sorting particles into cells took in the last frame.
+    #[cfg(feature = "papers")]
+    pub(crate) fn sorting(&self) -> Duration {
+        self.sorting.1
     }
 
     /// Draws the surfaces of a valid scene, with so many rays across and down in a pixel, and reads them back.
@@ -112,7 +129,8 @@ impl Surfaces {
         variant: Option<Variant>,
     ) -> Result<SeenSurfaces> {
         self.cost = FrameCost::default();
-        let (sight, plane) = plan::sight(scene, across)?;
+        let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
+        let (sight, plane) = plan::sight(scene, across, lanes)?;
         let mut plan = Plan::new(scene, &sight, &plane);
         plan.variant = variant.unwrap_or(plan.variant);
         self.prepare(compute, plan.variant)?;
@@ -183,6 +201,8 @@ impl Surfaces {
             "the particles in their cells",
             points,
         )?;
+        let planes = 4 * plane_of(points);
+        grow(&mut self.planes, compute, "the planes of particles", planes)?;
         grow(
             &mut self.squares,
             compute,
@@ -204,6 +224,7 @@ impl Surfaces {
             return Ok(());
         };
         let (surface_count, point_count) = (plan.surfaces.len() as u32, self.packed.len() as u32);
+        let plane = plane_of(self.packed.len()) as u32;
         let common: Vec<(&str, &dyn Argument)> = vec![
             ("sight", sight),
             ("surfaces", &self.surfaces),
@@ -217,6 +238,8 @@ impl Surfaces {
             ("cell_of_point", &self.cell_of_point),
             ("order", &self.order),
             ("particles", &self.particles),
+            ("planes", &self.planes),
+            ("plane", &plane),
             ("squares", &self.squares),
             ("square_count", &plan.square_count),
             ("depths", self.depths.argument()),
@@ -229,15 +252,21 @@ impl Surfaces {
             under_way: &mut self.under_way,
         };
         launches.sort(kernels, plan)?;
+        self.sorting = (launches.under_way.len(), Duration::ZERO);
         launches.draw(kernels, plan, sight)
     }
 
     /// Waits for what is under way, and adds up what it cost.
     fn settle(&mut self, compute: &Compute) -> Result<()> {
         let mut outcome = Ok(());
-        for event in self.under_way.drain(..) {
+        for (number, event) in self.under_way.drain(..).enumerate() {
             match run_time(compute, &event) {
-                Ok(time) => self.cost.kernel += time,
+                Ok(time) => {
+                    self.cost.kernel += time;
+                    if number < self.sorting.0 {
+                        self.sorting.1 += time;
+                    }
+                }
                 Err(error) => outcome = outcome.and(Err(error)),
             }
             self.cost.launches += 1;
@@ -269,6 +298,11 @@ impl Surfaces {
             light,
         })
     }
+}
+
+/// Returns the length of a plane of numbers of particles, behind which lanes may read.
+fn plane_of(points: usize) -> usize {
+    points + MOST_LANES
 }
 
 /// Makes sure that a buffer has room for so many elements.
@@ -307,6 +341,10 @@ impl Launches<'_> {
         let mut arguments: Vec<(&str, &dyn Argument)> = self.common.clone();
         arguments.extend(more);
         arguments.retain(|(name, _)| kernel.parameters().iter().any(|it| it == name));
+        let wanted = match self.compute.device().form {
+            DeviceForm::Gpu if wanted > 1 => GPU_GROUP,
+            _ => wanted,
+        };
         let group = kernel.group(self.compute, wanted)?;
         let event = kernel.launch(self.compute, &arguments, items as usize, group)?;
         self.under_way.push(event);

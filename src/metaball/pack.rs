@@ -58,11 +58,13 @@ device_struct! {
 
 device_struct! {
     /// A slab of depths: a grid of cells.
-    Slab [16] {
+    Slab [24] {
         first_cell: u32 = 0,
         columns: u32 = 4,
         rows: u32 = 8,
-        width: f32 = 12,
+        inverse_width: f32 = 12,
+        beside_x: f32 = 16,
+        beside_y: f32 = 20,
     }
 }
 

@@ -7,15 +7,15 @@ use crate::error::{Error, Result};
 use crate::image::DepthAlong;
 use crate::scene::{MetaballKernel, MetaballMethod, Metaballs, Scene, ViewPlane};
 
-/// Rays across and down that a work-item takes, unless pixels end elsewhere.
-const UNIT: u32 = 4;
-
 /// Rays across in the smallest cell.
 const LEAST_CELL: f64 = 16.0;
 
 /// Slabs of a surface, and cells of all, about: clouds far apart have thicker slabs, and larger cells.
 const MOST_SLABS: f64 = 1000.0;
 const MOST_CELLS: usize = 1 << 22;
+
+/// Rectangles are so much wider than they need to be: rounding loses no particle.
+const WIDER: f64 = 1.0001;
 
 /// Rays across and down in a square of which is known which slabs matter, at least.
 const LEAST_SQUARE: u32 = 32;
@@ -38,11 +38,11 @@ pub(super) struct Plan {
     pub square_count: u32,
 }
 
-/// Returns the grid of so many rays across a pixel.
+/// Returns the grid of so many rays across a pixel, of which a work-item carries as many side by side as it has lanes.
 ///
 /// # Errors
 /// [`Error::Unsupported`] if the picture's axes are not perpendicular to each other.
-pub(super) fn sight(scene: &Scene, across: u32) -> Result<(Sight, ViewPlane)> {
+pub(super) fn sight(scene: &Scene, across: u32, lanes: u32) -> Result<(Sight, ViewPlane)> {
     let (grid, plane) = scene.ray_grid(across);
     let (right, down) = (plane.column_step.normalize(), plane.row_step.normalize());
     let leans = |a: DVec3, b: DVec3| a.dot(b).abs() > 1e-6;
@@ -56,9 +56,16 @@ pub(super) fn sight(scene: &Scene, across: u32) -> Result<(Sight, ViewPlane)> {
     } else {
         1.0 / plane.near
     };
-    let unit = match UNIT.is_multiple_of(across) {
-        true => UNIT,
-        false => across,
+    // Columns of a block of rays, or pixels that end elsewhere.
+    let block = match lanes {
+        1 => 1,
+        4 => 2,
+        _ => 4,
+    };
+    let unit = if across < block && block.is_multiple_of(across) {
+        block
+    } else {
+        across
     };
     let square = unit * LEAST_SQUARE.div_ceil(unit);
     let along = scene.depth.as_ref().map(|depth| depth.along());
@@ -153,7 +160,7 @@ impl Plan {
         // Behind that no ray meets a particle's field; before it, there is none.
         let from = from.max(-radius) - radius;
         let length = (to + radius - from).max(radius);
-        let thickness = (0.5 * radius).max(length / MOST_SLABS);
+        let thickness = radius.max(length / MOST_SLABS);
         surface.first_z = from as f32;
         surface.thickness = thickness as f32;
         surface.reach = (radius / thickness - 1e-3).ceil() as u32;
@@ -178,7 +185,9 @@ impl Plan {
                 first_cell: self.cell_count,
                 columns: cells(sight.width),
                 rows: cells(sight.height),
-                width: if width.is_finite() { width as f32 } else { 1.0 },
+                inverse_width: (1.0 / width) as f32,
+                beside_x: (WIDER * rays.unwrap_or(0.0) * step / f64::from(sight.step_x)) as f32,
+                beside_y: (WIDER * rays.unwrap_or(0.0) * step / f64::from(sight.step_y)) as f32,
             };
             self.cell_count = self.cell_count.saturating_add(slab.columns * slab.rows);
             self.slabs.push(slab);

@@ -94,6 +94,12 @@ impl DeviceRenderer {
         self.wave.cost().then(self.bloom_cost)
     }
 
+    /// Returns what [`Surfaces::sorting`] says.
+    #[cfg(feature = "papers")]
+    pub(crate) fn surface_sorting(&self) -> Duration {
+        self.surfaces.sorting()
+    }
+
     /// Finds the surfaces of a valid scene, and returns what that cost, too.
     pub(crate) fn see_surfaces(&mut self, scene: &Scene) -> Result<(SeenSurfaces, FrameCost)> {
         let seen = self

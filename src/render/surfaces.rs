@@ -1,6 +1,8 @@
 //! Surfaces of a frame: they are drawn first, and what they hide ends the rays of the light, which is drawn then.
 
 use std::ops::ControlFlow;
+#[cfg(feature = "papers")]
+use std::time::Duration;
 use std::time::Instant;
 
 use super::one::Rows;
@@ -87,6 +89,16 @@ impl Renderer {
                 };
                 Ok((seen, cost))
             }
+        }
+    }
+
+    /// Returns how long particles were sorted in the last frame with surfaces; nothing on the reference.
+    #[cfg(feature = "papers")]
+    pub(crate) fn surface_sorting(&mut self) -> Duration {
+        match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.surface_sorting(),
+            RendererBackend::Several(renderer) => renderer.first().surface_sorting(),
+            RendererBackend::Reference { .. } => Duration::ZERO,
         }
     }
 

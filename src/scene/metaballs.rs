@@ -97,11 +97,11 @@ impl Default for MetaballSampling {
 }
 
 /// The share of the light on a lit surface that comes from all around.
-pub(crate) const AMBIENT: f64 = 0.15;
+pub(crate) const AMBIENT: f64 = 0.1;
 
 /// Where the lamp is that lights a surface, seen from there along the axes of the picture: to the right, down, along
 /// the view; of any length.
-pub(crate) const LAMP: DVec3 = DVec3::new(-0.45, -0.6, -0.9);
+pub(crate) const LAMP: DVec3 = DVec3::new(-0.55, -0.7, -0.7);
 
 /// The radius and the threshold of 2008.
 pub(super) const RADIUS_2008: f64 = 0.61;

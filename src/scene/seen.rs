@@ -11,6 +11,9 @@ const FINE: u32 = 4;
 const COARSE: u32 = 2;
 const LARGE: usize = 1 << 20;
 
+/// Pictures of more pixels have one ray a pixel: no buffer holds more.
+const HUGE: usize = 1 << 26;
+
 /// What is seen of surfaces.
 #[derive(Debug)]
 pub(crate) struct SeenSurfaces {
@@ -27,7 +30,7 @@ impl Scene {
         let depth = self.depth.as_ref();
         match depth.map(|depth| depth.size().width / self.image.width.max(1)) {
             Some(across) if across > 1 => across,
-            _ if !self.integration.has_footprints() => 1,
+            _ if !self.integration.has_footprints() || self.image.pixels() > HUGE => 1,
             _ if self.image.pixels() > LARGE => COARSE,
             _ => FINE,
         }

@@ -51,6 +51,7 @@ fn spoiled_builds_are_not() {
         ("-DHALF_GROWTH", &jittered),
         ("-DHALF_GROWTH", &balls),
         ("-DSTEP_BEYOND", &balls),
+        ("-DSTEP_BEYOND", &jittered),
         ("-DNARROW_CELLS", &jittered),
         ("-DSQUARED_DISTANCE", &far),
     ] {

@@ -33,6 +33,8 @@ mod groups; // has groups placed as the sources that they stand for
 mod help;
 mod light_groups; // reads what the program says of itself, and types its examples
 mod messages; // is told what to write instead, and nothing raw or long
+#[cfg(unix)] // as cli
+mod metaballs; // reads surfaces and particles, and writes them
 mod methods; // chooses ways to integrate, in files and by options
 #[cfg(unix)] // as cli
 mod outputs; // writes to links, pipes and devices, and reads scenes from pipes

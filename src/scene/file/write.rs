@@ -12,7 +12,8 @@ use crate::scene::Scene;
 /// Why a scene cannot be written.
 const NO_FILE: &str =
     "the depth image is in no file that the scene could name; save it as OpenEXR and open it again";
-const NO_POINTS: &str = "particles with radii and weights of their own are in no file that the scene could name; write them as .csv and open that";
+const NO_POINTS: &str = "particles with radii of their own are in no file that the scene could name; \
+    write them as .csv and open that";
 const NO_BACKGROUND: &str =
     "the background is in no file that the scene could name; save it and open it again";
 

@@ -1,5 +1,5 @@
 //! Reads NumPy's `.npy`: a magic word, the version, the length of a header, the header as a Python dictionary, then the
-//! numbers (NEP 1, "A simple file format for NumPy arrays"). Arrays of shape (n, 3) of float32 or float64 are positions.
+//! numbers (NEP 1, "A simple file format for NumPy arrays"). Arrays of shape (n, 3), float32 or float64, are positions.
 
 use super::file::{Read, vectors};
 

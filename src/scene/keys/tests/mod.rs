@@ -24,7 +24,7 @@ fn sample(key: &Key) -> String {
         Form::ColorOrFile => "\"#102030\"".to_owned(),
         Form::Matrix => format!("{:?}", glam::DMat4::IDENTITY.to_cols_array()),
         Form::Number(..) | Form::NumberOrNan | Form::NumberOr(..) => "0.5".to_owned(),
-        Form::Whole(least, _) => least.to_string(),
+        Form::Whole(least, _) => least.max(1).to_string(),
         Form::Flag => "true".to_owned(),
         Form::Text => "\"Z\"".to_owned(),
         Form::File => format!("\"{DEPTH}\""),
