@@ -318,5 +318,10 @@ pub fn figures(size: u32, method: fn(&MethodKeys) -> Method) -> Vec<(String, Sce
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         (name, scene)
     };
-    scene_files().into_iter().map(figure).collect()
+    let has_light = |(_, scene): &(String, Scene)| scene.source_count() > 0;
+    scene_files()
+        .into_iter()
+        .map(figure)
+        .filter(has_light)
+        .collect()
 }

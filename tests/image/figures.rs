@@ -108,5 +108,5 @@ fn without_doubles_pixels_on_a_core_need_pairs() {
 fn every_figure_misses_its_tolerance_where_fields_are_spoiled() {
     let options = common::options(common::device().lanes, common::BROKEN_FIELDS);
     let missing = that_miss(common::simpson_of, &options).len();
-    assert_eq!(missing, common::scene_files().len());
+    assert_eq!(missing, common::figures(SIZE, common::simpson_of).len());
 }
