@@ -7,19 +7,22 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 pub use crate::bloom::{BloomStep, Spreader};
+pub use crate::metaball::pack::STRUCTS as METABALL_STRUCTS;
 pub use crate::opencl::{
     Argument, Compute, DeviceBuffer, DeviceForm, DeviceStruct, Discovery, Film, FilmFormat,
     FilmPart, Kernel, OpenClDevice, Pixel, Program, SHARED, Sources, StoredDepths, StructLayout,
     Uploaded, discover, host_depth_definitions,
 };
 pub use crate::reference::{
-    CurveField, Field, Integrand, Sample, Source, b_spline, exact, integrate, simpson, sources,
+    CurveField, Field, Integrand, Sample, Source, SurfaceRay, b_spline, exact, integrate, simpson,
+    sources, surface_rays,
 };
 pub use crate::scene::ViewPlane;
 pub use crate::wave::{Rule, Split, TILE_SHARES, Wave, pack};
 
 use crate::bloom;
 use crate::error::{Error, Result};
+use crate::metaball;
 use crate::opencl::{RendererOptions, run_time};
 use crate::render::Renderer;
 use crate::scene::Scene;
@@ -167,6 +170,29 @@ pub fn build_bloom_text(
     options: &RendererOptions,
 ) -> Result<Program> {
     bloom::build_text(compute, name, text, options)
+}
+
+/// Returns what a renderer finds of a scene's surfaces: the length of every ray, and the light of every pixel, RGBA.
+///
+/// # Errors
+/// As [`Renderer::render`].
+pub fn see_surfaces(renderer: &mut Renderer, scene: &Scene) -> Result<(Vec<f32>, Vec<f32>)> {
+    scene.validate()?;
+    let (seen, _) = renderer.see_surfaces(scene)?;
+    Ok((seen.depth.as_slice().to_vec(), seen.light))
+}
+
+/// Builds a text that may include files of `cl/metaball/`, as [`build_text`] does with those of the wave.
+///
+/// # Errors
+/// As there.
+pub fn build_metaball_text(
+    compute: &Compute,
+    name: &str,
+    text: &str,
+    options: &RendererOptions,
+) -> Result<Program> {
+    metaball::build_text(compute, name, text, options)
 }
 
 /// Runs a kernel over `items` work-items, in groups of `group`, waits for it, and returns how long the device worked.

@@ -53,6 +53,7 @@ pub mod image;
 #[doc(hidden)]
 pub mod internals;
 mod memory;
+mod metaball;
 #[cfg(feature = "files")]
 mod nearest;
 mod opencl;

@@ -60,10 +60,11 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 11] = [
+const LAYERS: [(&str, &[&str]); 12] = [
     ("image", &[]),
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
+    ("metaball", &["image", "opencl", "scene"]),
     ("scene", &["image"]),
     ("particle", &["scene"]),
     ("reference", &["image", "scene"]),
@@ -71,7 +72,15 @@ const LAYERS: [(&str, &[&str]); 11] = [
     ("wave", &["image", "opencl", "scene", "reference"]),
     (
         "render",
-        &["image", "opencl", "bloom", "scene", "reference", "wave"],
+        &[
+            "image",
+            "opencl",
+            "bloom",
+            "metaball",
+            "scene",
+            "reference",
+            "wave",
+        ],
     ),
     (
         "papers",
@@ -80,7 +89,15 @@ const LAYERS: [(&str, &[&str]); 11] = [
     ("verify", &["scene", "reference", "render"]),
     (
         "internals",
-        &["opencl", "bloom", "scene", "reference", "wave", "render"],
+        &[
+            "opencl",
+            "bloom",
+            "metaball",
+            "scene",
+            "reference",
+            "wave",
+            "render",
+        ],
     ),
 ];
 const BELOW_ALL: [&str; 11] = [
@@ -193,6 +210,7 @@ fn every_file_of_cl_is_embedded_once() {
     let lists = [
         "src/wave/kinds.rs",
         "src/bloom/sources.rs",
+        "src/metaball/sources.rs",
         "src/opencl/source.rs",
     ];
     let lists = lists.map(text_of).concat();

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::records::{Origin, Spread};
 use super::subcommands::{BenchArguments, TableName};
-use super::{Outcome, choose_devices, names, note, print, read_scene, tell_depths};
+use super::{Outcome, bench_2008, choose_devices, names, note, print, read_scene, tell_depths};
 
 /// A cell of a table.
 #[derive(Serialize)]
@@ -92,6 +92,7 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
         Some(TableName::Torus) => bench_tables(arguments, &[Table::Torus]),
         Some(TableName::Bezier) => bench_tables(arguments, &[Table::Bezier]),
         Some(TableName::Beam) => bench_table_2010(arguments),
+        Some(TableName::Metaballs) => bench_2008::run(arguments),
         None => bench_tables(arguments, &[Table::Torus, Table::Bezier]),
     }
 }
@@ -276,7 +277,7 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     ))
 }
 
-fn prepare(arguments: &BenchArguments) -> Result<(Vec<Device>, Renderer), super::Failure> {
+pub fn prepare(arguments: &BenchArguments) -> Result<(Vec<Device>, Renderer), super::Failure> {
     if let Some(folder) = &arguments.frames_out {
         std::fs::create_dir_all(folder)
             .map_err(|error| Error::output(folder, error.to_string()).caused_by(error))?;
@@ -289,12 +290,12 @@ fn prepare(arguments: &BenchArguments) -> Result<(Vec<Device>, Renderer), super:
     Ok((devices, renderer))
 }
 
-fn time(arguments: &BenchArguments) -> Duration {
+pub fn time(arguments: &BenchArguments) -> Duration {
     Duration::from_secs_f64(arguments.seconds)
 }
 
 /// Writes the last frame if frames are wanted.
-fn save(arguments: &BenchArguments, name: &str, speed: &Speed, scene: &Scene) -> Outcome {
+pub fn save(arguments: &BenchArguments, name: &str, speed: &Speed, scene: &Scene) -> Outcome {
     if let Some(folder) = &arguments.frames_out {
         ImageFile::create(folder.join(name))?.write(&speed.image, &scene.display)?;
     }

@@ -3,6 +3,7 @@
 mod animate;
 mod args;
 mod bench;
+mod bench_2008;
 mod compare;
 mod contacts;
 mod devices;

@@ -52,7 +52,8 @@ pub struct VerifyArguments {
 pub struct BenchArguments {
     /// Scene file to measure instead of the paper's tables
     pub scene: Option<PathBuf>,
-    /// A paper's table: 2 (torus) or 3 (Bezier) of 2015, both without; 2010 (beam, with and without hidden surfaces)
+    /// A paper's table: 2 (torus) or 3 (Bezier) of 2015, both without; 2010 (beam, with and without hidden surfaces);
+    /// 2008 (metaballs)
     #[arg(long, value_enum, conflicts_with = "scene")]
     pub table: Option<TableName>,
     #[command(flatten)]
@@ -124,6 +125,9 @@ pub enum TableName {
     /// A beam in closed form, with and without hidden surfaces
     #[value(name = "2010")]
     Beam,
+    /// Metaballs, exactly and by samples
+    #[value(name = "2008")]
+    Metaballs,
 }
 
 #[derive(Debug, Args)]

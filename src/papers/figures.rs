@@ -25,7 +25,7 @@ macro_rules! figures {
 }
 
 impl Figure {
-    /// All figures: those of 2015, 2010 and 2006.
+    /// All figures: those of 2015, 2010, 2008 and 2006.
     pub const ALL: &[Self] = figures!(
         "figure-07",
         "figure-08",
@@ -49,6 +49,22 @@ impl Figure {
         "2010-figure-16",
         "2010-figure-17",
         "2010-figure-18",
+        "2008-figure-08-a",
+        "2008-figure-08-b",
+        "2008-figure-09-4096",
+        "2008-figure-09-16384",
+        "2008-figure-09-65536",
+        "2008-figure-10-a",
+        "2008-figure-10-b",
+        "2008-figure-10-c",
+        "2008-figure-10-d",
+        "2008-figure-11-a",
+        "2008-figure-11-b",
+        "2008-figure-11-c",
+        "2008-figure-11-d",
+        "2008-figure-12-16",
+        "2008-figure-12-32",
+        "2008-figure-12-52",
         "2006-figure-5-1",
         "2006-figure-5-3-20",
         "2006-figure-5-3-40",

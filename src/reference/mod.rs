@@ -6,6 +6,7 @@
 mod field;
 mod footprint;
 mod quadrature;
+mod surface;
 
 use std::ops::{ControlFlow, Range};
 use std::slice;
@@ -16,6 +17,9 @@ use glam::DVec3;
 pub use field::{CurveField, Field, Sample, Source, b_spline, sources};
 #[doc(hidden)]
 pub use quadrature::integrate;
+pub(crate) use surface::see_surfaces;
+#[doc(hidden)]
+pub use surface::{SurfaceRay, surface_rays};
 
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
@@ -204,6 +208,18 @@ pub fn render_simpson(scene: &Scene, divisions: u32) -> Result<RadianceImage> {
 
 fn render_image(scene: &Scene, method: Method) -> Result<RadianceImage> {
     scene.validate()?;
+    if scene.metaballs.is_empty() {
+        return render_light(scene, method);
+    }
+    let seen = see_surfaces(scene)?;
+    let mut image = render_light(&seen.left_of(scene), method)?;
+    let stride = 4 * scene.image.width as usize;
+    seen.add(scene, 0..scene.image.height, (image.as_mut_slice(), stride));
+    Ok(image)
+}
+
+/// Renders a scene without surfaces.
+fn render_light(scene: &Scene, method: Method) -> Result<RadianceImage> {
     let mut image = RadianceImage::new(scene.image)?;
     let nothing = &mut |_: f32| ControlFlow::Continue(());
     let rows = 0..scene.image.height;

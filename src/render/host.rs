@@ -117,6 +117,10 @@ impl Renderer {
                 "the scene's are finer than its pixels; a host's memory takes one for each pixel";
             return Err(unfit("depth", reason));
         }
+        if !scene.metaballs.is_empty() {
+            let reason = "frames for a host have no surfaces; render them into an image (Renderer::render_into)";
+            return Err(unfit("metaballs", reason));
+        }
         let bloom = self.bloom_of(scene);
         match &mut self.backend {
             // SAFETY: the caller's promise.

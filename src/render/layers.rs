@@ -2,10 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use super::Renderer;
 use super::one::Rows;
-use super::{Renderer, whole};
 use crate::error::Result;
-use crate::image::{Bloom, RadianceImage, kept_image};
 use crate::scene::{DepthLayers, Scene};
 
 impl Renderer {
@@ -51,16 +50,5 @@ impl Renderer {
             Some(bloom) => self.spread(scene.image, wanted.target, &bloom),
             None => Ok(()),
         }
-    }
-
-    /// Draws such a frame into an image of the renderer's own.
-    pub(super) fn keep_layers(&mut self, scene: &Scene, bloom: Option<Bloom>) -> Result<&[f32]> {
-        let mut image = self.kept.take();
-        let target = kept_image(&mut image, scene.image)?.as_mut_slice();
-        let nothing = &mut |_: f32| ControlFlow::Continue(());
-        let drawn = self.draw_layers(scene, whole(scene, target, bloom), nothing);
-        self.kept = image;
-        drawn?;
-        Ok(self.kept.as_ref().map_or(&[], RadianceImage::as_slice))
     }
 }

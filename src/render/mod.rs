@@ -12,6 +12,7 @@ mod referenced;
 mod several;
 mod shares;
 mod shutter;
+mod surfaces;
 
 use std::ops::{ControlFlow, Deref, Range};
 use std::time::Instant;
@@ -65,6 +66,8 @@ pub struct Renderer {
     layers: Option<DepthLayers>,
     /// What parts of the last frame cost that were drawn before its last part.
     cost_before: FrameCost,
+    /// Whether there was light besides surfaces in the last frame.
+    has_light: bool,
     /// An image that is put together of parts, and lent.
     kept: Option<RadianceImage>,
     /// What means over time keep.
@@ -138,6 +141,7 @@ impl Renderer {
             spreads_bloom: false,
             layers: None,
             cost_before: FrameCost::default(),
+            has_light: true,
             kept: None,
             shutter: Shutter::default(),
             moments: 0,
@@ -270,8 +274,8 @@ impl Renderer {
     pub fn render_mapped(&mut self, scene: &Scene) -> Result<MappedImage<'_>> {
         self.check(scene)?;
         let bloom = self.bloom_of(scene);
-        if self.has_layers(scene)? {
-            let values = self.keep_layers(scene, bloom)?;
+        if !scene.metaballs.is_empty() || self.has_layers(scene)? {
+            let values = self.keep_drawn(scene, bloom)?;
             return Ok(MappedImage(MappedBackend::Host(values)));
         }
         match &mut self.backend {
@@ -301,7 +305,10 @@ impl Renderer {
     /// Returns what the last frame cost.
     #[must_use]
     pub fn last_cost(&self) -> FrameCost {
-        self.cost_before.then(self.cost_of_part())
+        match self.has_light {
+            true => self.cost_before.then(self.cost_of_part()),
+            false => self.cost_before,
+        }
     }
 
     fn cost_of_part(&self) -> FrameCost {
@@ -345,20 +352,9 @@ impl Renderer {
     /// Checks a scene; its sources only if they changed.
     fn check(&mut self, scene: &Scene) -> Result<()> {
         self.cost_before = FrameCost::default();
+        self.has_light = true;
         self.moments = 1;
         scene.validate_again(&mut self.checked)
-    }
-
-    fn draw(
-        &mut self,
-        scene: &Scene,
-        wanted: Rows<'_>,
-        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
-    ) -> Result<()> {
-        match self.has_layers(scene)? {
-            true => self.draw_layers(scene, wanted, progress),
-            false => self.draw_part(scene, wanted, progress),
-        }
     }
 
     fn draw_part(

@@ -7,10 +7,11 @@ use crate::bloom::Spreader;
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
 use crate::image::{Bloom, ImageSize};
+use crate::metaball::Surfaces;
 use crate::opencl::{
     Compute, Film, HostDepths, HostLink, MappedFilm, OpenClDevice, Pixel, RendererOptions,
 };
-use crate::scene::{Ray, Scene};
+use crate::scene::{Ray, Scene, SeenSurfaces};
 use crate::wave::{Plan, Wave};
 
 /// A device with its engines and its film, which are kept from frame to frame.
@@ -19,6 +20,7 @@ pub(crate) struct DeviceRenderer {
     // Dropped in this order: what uses the context before the context.
     pub(super) wave: Wave,
     pub(super) spreader: Spreader,
+    pub(super) surfaces: Surfaces,
     /// Of the bloom of the last frame.
     pub(super) bloom_cost: FrameCost,
     pub(super) film: Film,
@@ -64,6 +66,7 @@ impl DeviceRenderer {
         Ok(Self {
             wave: Wave::new(&compute, options)?,
             spreader: Spreader::new(options),
+            surfaces: Surfaces::new(options),
             bloom_cost: FrameCost::default(),
             film: Film::new(),
             host,
@@ -89,6 +92,20 @@ impl DeviceRenderer {
     /// Returns what the last frame cost.
     pub(crate) fn cost(&self) -> FrameCost {
         self.wave.cost().then(self.bloom_cost)
+    }
+
+    /// Returns what [`Surfaces::sorting`] says.
+    #[cfg(feature = "papers")]
+    pub(crate) fn surface_sorting(&self) -> Duration {
+        self.surfaces.sorting()
+    }
+
+    /// Finds the surfaces of a valid scene, and returns what that cost, too.
+    pub(crate) fn see_surfaces(&mut self, scene: &Scene) -> Result<(SeenSurfaces, FrameCost)> {
+        let seen = self
+            .surfaces
+            .draw(&self.compute, scene, scene.rays_across())?;
+        Ok((seen, self.surfaces.cost()))
     }
 
     /// Returns what [`Wave::grain_rows`] says.

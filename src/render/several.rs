@@ -53,6 +53,11 @@ impl SeveralRenderer {
         })
     }
 
+    /// Returns the device that draws what is not shared out.
+    pub(crate) fn first(&mut self) -> &mut DeviceRenderer {
+        &mut self.renderers[0]
+    }
+
     /// Renders as [`DeviceRenderer::render_rows`] does. After an error, all devices have ended.
     pub(crate) fn render_rows(
         &mut self,

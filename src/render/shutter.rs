@@ -211,9 +211,10 @@ impl Renderer {
         scene.validate_again(&mut self.checked)?;
         self.cost_before = frames.cost;
         let progress = &mut |share: f32| progress(frames.share(share * *moments as f32));
-        let has_layers = self.has_layers(scene)?;
+        self.has_light = true;
+        let is_put_together = !scene.metaballs.is_empty() || self.has_layers(scene)?;
         let weight = *weight as f32;
-        if let (RendererBackend::OpenCl(renderer), false) = (&mut self.backend, has_layers) {
+        if let (RendererBackend::OpenCl(renderer), false) = (&mut self.backend, is_put_together) {
             renderer.add_light(scene, weight, sum, progress)?;
         } else {
             let mut frame = self.kept.take();

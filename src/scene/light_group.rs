@@ -1,5 +1,7 @@
 //! Groups of lights: sources whose light is also drawn by itself, for a program that mixes it anew.
 
+use glam::DVec3;
+
 use super::kinds::for_each_kind;
 use super::source::HasLight;
 use super::values::{Checked, Fault};
@@ -32,7 +34,8 @@ macro_rules! define_light_groups {
             }
 
             /// Returns the scene with the sources of one group of lights alone, or with `None` those of no group, seen
-            /// along the same rays. Light adds: the images of all groups, and of none, add up to that of the scene.
+            /// along the same rays. Surfaces hide the light of all groups, and shine in that of no group. Light adds:
+            /// the images of all groups, and of none, add up to that of the scene.
             #[must_use]
             pub fn of_light_group(&self, group: Option<&str>) -> Self {
                 let mut scene = Self::new(self.camera.clone());
@@ -40,6 +43,10 @@ macro_rules! define_light_groups {
                 (scene.image, scene.decay, scene.absorption) = (self.image, self.decay, self.absorption);
                 (scene.integration, scene.display) = (self.integration, self.display.clone());
                 scene.depth = self.depth.clone();
+                scene.metaballs = self.metaballs.clone();
+                if group.is_some() {
+                    scene.metaballs.iter_mut().for_each(|surface| surface.color = DVec3::ZERO);
+                }
                 $(scene.$list = kept(&self.$list, group);)*
                 scene
             }
@@ -62,10 +69,10 @@ impl Scene {
         names.into_iter().collect()
     }
 
-    /// Returns whether there are sources of no group of lights.
+    /// Returns whether there is light of no group: of sources, or of surfaces.
     #[must_use]
     pub fn has_ungrouped_light(&self) -> bool {
-        let mut has = false;
+        let mut has = !self.metaballs.is_empty();
         self.for_each_light_group(&mut |group| has |= group.is_none());
         has
     }

@@ -48,7 +48,7 @@ impl<T> List<T> {
     }
 }
 
-fn new_revision() -> u64 {
+pub(super) fn new_revision() -> u64 {
     static LAST: AtomicU64 = AtomicU64::new(0);
     LAST.fetch_add(1, Ordering::Relaxed) + 1
 }

@@ -34,11 +34,14 @@ pub mod keys;
 pub(crate) mod kinds;
 mod light_group;
 mod list;
+mod metaballs;
+mod points;
 #[cfg(feature = "files")]
 mod preset;
 mod random;
 mod ray;
 mod reduction;
+mod seen;
 mod simulation;
 mod source;
 mod stamp;
@@ -61,9 +64,13 @@ pub use integration::{
     Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
 };
 pub use list::List;
+pub(crate) use metaballs::{AMBIENT, LAMP};
+pub use metaballs::{MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs};
+pub use points::{Lattice, PointList, PointSize};
 #[cfg(feature = "files")]
 pub use preset::Preset;
 pub use ray::{Ray, ViewPlane};
+pub(crate) use seen::SeenSurfaces;
 pub(crate) use simulation::LAST_FRAME;
 pub use simulation::{
     Acceleration, Collider, ColliderShape, ControlPoint, EmittedWave, Mixture, ParticleShape,
@@ -105,6 +112,8 @@ macro_rules! define_scene {
             pub waves: List<EmittedWave>,
             /// What they hit.
             pub colliders: List<Collider>,
+            /// Surfaces, which hide the light behind them too.
+            pub metaballs: List<Metaballs>,
             $($(#[$doc])* pub $list: List<$Type>,)*
         }
 
@@ -123,6 +132,7 @@ macro_rules! define_scene {
                     simulation: None,
                     waves: List::new(),
                     colliders: List::new(),
+                    metaballs: List::new(),
                     $($list: List::new(),)*
                 }
             }

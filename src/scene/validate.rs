@@ -58,6 +58,11 @@ impl Scene {
         check_softening(integration.softening).map_err(of("integration"))?;
         check_display(&self.display, self.image).map_err(of("display"))?;
         self.check_depth().map_err(of(""))?;
+        for (index, metaballs) in self.metaballs.iter().enumerate() {
+            metaballs
+                .check()
+                .map_err(|fault| fault.of(&format!("metaballs[{index}]")))?;
+        }
         self.check_reduction()?;
         self.check_simulation()?;
         let brightness = self.brightness();

@@ -87,6 +87,7 @@ impl Scene {
             .into_iter()
             .chain(self.byte_colors())
             .chain(dark)
+            .chain(self.no_particles())
             .collect()
     }
 
@@ -129,6 +130,16 @@ impl Scene {
         first
     }
 
+    /// Says that a surface is made of nothing.
+    fn no_particles(&self) -> Option<SceneError> {
+        let index = self
+            .metaballs
+            .iter()
+            .position(|metaballs| metaballs.points.is_empty())?;
+        let message = "it has no particle, so there is no surface: `points`, `file` or `lattice` says where they are";
+        Some(SceneError::value(format!("metaballs[{index}]"), message))
+    }
+
     /// Says that nothing glows.
     fn darkness(&self) -> Option<SceneError> {
         let mut first = None;
@@ -138,6 +149,13 @@ impl Scene {
             light = (light.0.min(source.light.0), light.1.max(source.light.1));
             light.1 <= 0.0
         });
+        if self
+            .metaballs
+            .iter()
+            .any(|metaballs| metaballs.color.max_element() > 0.0)
+        {
+            return None; // what is told of those is another matter
+        }
         let Some(first) = first else {
             let message = match self.waves.is_empty() {
                 true => "the scene has no source of light: the picture is black",

@@ -7,6 +7,7 @@ pub mod engines;
 pub mod host;
 #[cfg(unix)] // loads a shared library
 pub mod layer;
+pub mod metaballs;
 pub mod occluders;
 pub mod program;
 pub mod random;
@@ -325,9 +326,10 @@ pub fn figures(size: u32, method: fn(&MethodKeys) -> Method) -> Vec<(String, Sce
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         (name, scene)
     };
-    let scenes = scene_files().into_iter().map(figure);
-    // Waves of particles are simulated, but not drawn yet.
-    scenes
-        .filter(|(_, scene)| scene.source_count() > 0)
+    let has_light = |(_, scene): &(String, Scene)| scene.source_count() > 0;
+    scene_files()
+        .into_iter()
+        .map(figure)
+        .filter(has_light)
         .collect()
 }

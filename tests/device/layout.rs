@@ -4,8 +4,8 @@
 use crate::common;
 use energywave::internals::pack::layout::STRUCTS;
 use energywave::internals::{
-    self, BloomStep, DeviceBuffer, DeviceStruct, KINDS, StoredDepths, StructLayout,
-    host_depth_definitions,
+    self, BloomStep, DeviceBuffer, DeviceStruct, KINDS, METABALL_STRUCTS, StoredDepths,
+    StructLayout, host_depth_definitions,
 };
 
 const BLOOM_STEP: StructLayout = BloomStep::LAYOUT;
@@ -33,10 +33,15 @@ fn copy_fields(layout: &StructLayout, files: &str) -> String {
 /// Where the structs of the wave and of the film are.
 const FILES: &str = "#include \"film.h\"\n#include \"view.h\"\n#include \"wave/kinds.h\"\n#include \"wave/types.h\"\n";
 
+fn is_of_metaballs(layout: &StructLayout) -> bool {
+    METABALL_STRUCTS.iter().any(|it| it.name == layout.name)
+}
+
 fn words_by_name(layout: &StructLayout) -> Vec<u32> {
-    let files = match layout.name == BLOOM_STEP.name {
-        true => "#include \"film.h\"\n#include \"bloom/step.h\"\n",
-        false => FILES,
+    let files = match () {
+        () if layout.name == BLOOM_STEP.name => "#include \"film.h\"\n#include \"bloom/step.h\"\n",
+        () if is_of_metaballs(layout) => "#include \"metaball/types.h\"\n",
+        () => FILES,
     };
     words_of(layout, files, "")
 }
@@ -53,9 +58,15 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
     output.write(&compute, &vec![0; count]).unwrap();
     let text = copy_fields(layout, files);
     let options = common::options(1, definitions);
-    let program = match layout.name == BLOOM_STEP.name {
-        true => internals::build_bloom_text(&compute, "copy_fields.cl", &text, &options),
-        false => internals::build_text(&compute, "copy_fields.cl", &text, &KINDS, &options),
+    let name = "copy_fields.cl";
+    let program = match () {
+        () if layout.name == BLOOM_STEP.name => {
+            internals::build_bloom_text(&compute, name, &text, &options)
+        }
+        () if is_of_metaballs(layout) => {
+            internals::build_metaball_text(&compute, name, &text, &options)
+        }
+        () => internals::build_text(&compute, name, &text, &KINDS, &options),
     }
     .unwrap();
     // SAFETY: the kernel reads and writes as many words as the record has.
@@ -77,7 +88,7 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
 
 #[test]
 fn the_device_finds_every_field_where_the_host_put_it() {
-    for layout in STRUCTS.iter().chain([&BLOOM_STEP]) {
+    for layout in STRUCTS.iter().chain([&BLOOM_STEP]).chain(METABALL_STRUCTS) {
         let expected: Vec<u32> = (1..=layout.size as u32 / 4).collect();
         assert_eq!(words_by_name(layout), expected, "{}", layout.name);
     }

@@ -27,6 +27,7 @@ mod images; // bounds the worst pixel of the Simpson rule
 mod jittered; // holds stratified samples to their definition, and shows what they gain
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
 mod layers; // holds several lights of one core to as many sources
+mod metaballs; // holds surfaces to float64 by another method
 mod parts; // draws rows, rays and changed scenes as the whole image has them
 mod path_core; // what a path is by definition
 mod paths; // holds paths to their definition
@@ -38,5 +39,6 @@ mod segment; // holds segments to their definition
 mod shape_forms; // takes closed forms of shapes along every part of a ray
 mod shapes; // holds how fields fall off to their definition
 mod shutter; // blurs motion
+mod surfaces; // draws surfaces among light
 mod tiles; // holds interpolation by tiles to the tolerance, and counts what it costs
 mod tone_maps; // holds tone maps to their published constants

@@ -5,7 +5,9 @@ use std::process::Command;
 use std::time::Duration;
 
 use energywave::image::compare;
-use energywave::papers::{DIVISIONS, RESOLUTIONS, TABLE_2010, Table, measure, turned};
+use energywave::papers::{
+    DIVISIONS, RESOLUTIONS, TABLE_2010, Table, measure, methods_2008, table_2008, turned,
+};
 use energywave::{Device, RadianceImage, Renderer, reference};
 use serde_json::Value;
 
@@ -219,4 +221,21 @@ fn a_bench_of_nothing_that_exists_is_refused() {
     assert_eq!(code, Some(2));
     assert!(message.contains("of their own"), "{message}");
     assert_eq!(run(&["nowhere.toml"]).0, Some(3));
+}
+
+#[test]
+fn a_cell_of_2008_says_what_is_hit_and_what_samples_miss() {
+    let mut renderer = common::renderer(common::device().lanes, "");
+    let cell = table_2008()[0];
+    let [exact, few, many] = methods_2008().map(|method| {
+        let found = cell.measure(&mut renderer, method, Duration::ZERO).unwrap();
+        assert!(found.speed.fps > 0.0 && found.sort > Duration::ZERO);
+        assert!(found.sort < found.speed.times.greatest);
+        (found.hit, found.holes)
+    });
+    assert!((0.1..0.4).contains(&exact.0) && exact.1 == 0.0, "{exact:?}");
+    assert!(
+        few.0 == exact.0 && few.1 > 0.0 && many.1 <= few.1,
+        "{few:?} {many:?}"
+    );
 }

@@ -10,6 +10,8 @@ mod animate; // draws frames of scenes that move
 mod bad_animations; // has frames refused that cannot be
 mod bad_displays; // has displays refused that no file can hold
 mod bad_looks; // has every fault of layers named with its place
+#[cfg(unix)] // as cli
+mod bad_metaballs; // has every fault of surfaces and particles named
 mod bad_scenes;
 mod bad_series; // has every fault of a scene file named with its place
 mod bad_simulations; // has every fault of waves of particles named with its place
@@ -32,6 +34,8 @@ mod groups; // has groups placed as the sources that they stand for
 mod help;
 mod light_groups; // reads what the program says of itself, and types its examples
 mod messages; // is told what to write instead, and nothing raw or long
+#[cfg(unix)] // as cli
+mod metaballs; // reads surfaces and particles, and writes them
 mod methods; // chooses ways to integrate, in files and by options
 #[cfg(unix)] // as cli
 mod outputs; // writes to links, pipes and devices, and reads scenes from pipes

@@ -10,6 +10,7 @@ mod integration;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
+mod metaballs;
 mod moving;
 mod numbers;
 mod pieces;
@@ -44,6 +45,8 @@ use groups::{GroupTable, Groups};
 pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
 pub use integration::MethodKeys;
+use metaballs::MetaballsTable;
+pub(super) use metaballs::{LATTICE_KEYS, METABALLS_KEYS};
 use scan::UNIT_COUNT;
 pub use span::SceneSpan;
 pub(super) use time::TIME_KEYS;
@@ -82,6 +85,8 @@ macro_rules! define_scene_file {
             wave: List<EmittedWave>,
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             collider: Vec<ColliderTable>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            metaballs: Vec<MetaballsTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
             #[serde(default, skip_serializing)]
             group: Vec<GroupTable>,
@@ -97,7 +102,7 @@ macro_rules! define_scene_file {
         }
 
         impl SceneFile {
-            /// Returns the scene without its depth image.
+            /// Returns the scene without its depth image, and without surfaces.
             fn scene(&mut self) -> Scene {
                 Scene {
                     camera: self.camera.clone(),
@@ -110,6 +115,7 @@ macro_rules! define_scene_file {
                     simulation: self.simulation,
                     waves: std::mem::take(&mut self.wave),
                     colliders: self.colliders(),
+                    metaballs: List::new(),
                     $($list: std::mem::take(&mut self.$kind),)*
                 }
             }
@@ -156,7 +162,12 @@ macro_rules! define_scene_file {
             }
 
             /// Makes a file's scene as it is written.
-            fn of(scene: &Scene, depth: Option<DepthTable>, display: DisplayTable) -> Self {
+            fn of(
+                scene: &Scene,
+                depth: Option<DepthTable>,
+                display: DisplayTable,
+                metaballs: Vec<MetaballsTable>,
+            ) -> Self {
                 Self {
                     camera: scene.camera.clone(),
                     image: scene.image,
@@ -169,6 +180,7 @@ macro_rules! define_scene_file {
                     simulation: scene.simulation,
                     wave: scene.waves.clone(),
                     collider: scene.colliders.iter().map(ColliderTable::of).collect(),
+                    metaballs,
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
                 }
@@ -208,6 +220,11 @@ impl SceneFile {
         self.simulation = other.simulation;
         self.wave = other.wave;
         self.collider = other.collider;
+        let mut metaballs = other.metaballs;
+        for (new, old) in metaballs.iter_mut().zip(&self.metaballs) {
+            new.share(old);
+        }
+        self.metaballs = metaballs;
     }
 
     /// Returns whether waves are shown as they are at the scene's time.
@@ -241,6 +258,9 @@ impl SceneFile {
 
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
     fn exposure_of_brightest(mut self) -> Option<f64> {
+        if !self.metaballs.is_empty() {
+            return None;
+        }
         let mut scene = self.scene();
         Groups::add_to(&mut scene, std::mem::take(&mut self.group)).ok()?;
         scene.exposure_of_brightest()
@@ -264,6 +284,9 @@ impl SceneFile {
         self.check_colliders()?;
         let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
         groups.check(&scene)?;
+        for (index, table) in self.metaballs.iter().enumerate() {
+            scene.metaballs.push(table.open(index, folder)?);
+        }
         self.display.fit_exposure(&mut scene);
         adjust(&mut scene, &self.integration.keys())?;
         if let (Some(depth), None) = (&self.depth, &scene.depth) {

@@ -64,10 +64,11 @@ pub(super) fn find(document: &mut Node, language: Language) -> Result<Found, Sce
                         Node::Table(entries) => finder.in_table(table, entries),
                         _ => Ok(false),
                     })?;
-                    found.in_single |= has_track && unit.is_none();
-                    found
-                        .units
-                        .extend(unit.filter(|_| has_track).map(|unit| (unit, index)));
+                    match unit {
+                        Some(unit) if has_track => found.units.push((unit, index)),
+                        // What stands in the first piece, as tables of which there is one do.
+                        _ => found.in_single |= has_track,
+                    }
                 }
             }
             _ => {}

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Serialize, Serializer};
 
-use super::{DepthTable, DisplayTable, SceneFile};
+use super::{DepthTable, DisplayTable, MetaballsTable, SceneFile};
 use crate::error::{Error, Result};
 use crate::output::Output;
 use crate::scene::Scene;
@@ -12,6 +12,8 @@ use crate::scene::Scene;
 /// Why a scene cannot be written.
 const NO_FILE: &str =
     "the depth image is in no file that the scene could name; save it as OpenEXR and open it again";
+const NO_POINTS: &str = "particles with radii of their own are in no file that the scene could name; \
+    write them as .csv and open that";
 const NO_BACKGROUND: &str =
     "the background is in no file that the scene could name; save it and open it again";
 
@@ -27,7 +29,10 @@ impl Serialize for Scene {
         };
         let display = DisplayTable::of(&self.display);
         let display = display.ok_or_else(|| serde::ser::Error::custom(NO_BACKGROUND))?;
-        SceneFile::of(self, depth, display).serialize(writer)
+        let metaballs = self.metaballs.iter().map(MetaballsTable::of);
+        let metaballs: Option<Vec<_>> = metaballs.collect();
+        let metaballs = metaballs.ok_or_else(|| serde::ser::Error::custom(NO_POINTS))?;
+        SceneFile::of(self, depth, display, metaballs).serialize(writer)
     }
 }
 

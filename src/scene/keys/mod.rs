@@ -137,7 +137,7 @@ pub(crate) mod words {
     pub(crate) use super::Form::{self, *};
     pub(crate) use super::key;
     #[allow(unused_imports, reason = "few tables need them")]
-    pub(crate) use crate::scene::simulation::{LAST_FRAME, MOST_SAMPLES};
+    pub(crate) use crate::scene::simulation::{LAST_FRAME, MOST_SPRITES};
     use crate::scene::values::{LARGEST, SMALLEST};
 
     pub(crate) const NONE: &str = "";

@@ -6,7 +6,7 @@ use crate::image::ImageSize;
 use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
 use crate::scene::file::{
     BLOOM_KEYS, BOX_KEYS, COLLIDER_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS,
-    PLANE_KEYS, SPHERE_KEYS, TIME_KEYS,
+    LATTICE_KEYS, METABALLS_KEYS, PLANE_KEYS, SPHERE_KEYS, TIME_KEYS,
 };
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
@@ -207,12 +207,24 @@ pub fn tables() -> Vec<Table> {
     });
     tables.push(group);
     tables.extend(simulated_tables());
+    tables.push(Table::new(
+        "metaballs",
+        Many,
+        "A surface where the summed field of particles reaches a threshold; it hides the light",
+        METABALLS_KEYS,
+    ));
     tables.extend([
         Table::new(
             "bloom",
             Inside,
             "Light of a picture that is spread around what is bright",
             BLOOM_KEYS,
+        ),
+        Table::new(
+            "lattice",
+            Inside,
+            "Particles in layers of columns and rows, one layer on the other, about the origin",
+            LATTICE_KEYS,
         ),
         Table::new(
             "layers",

@@ -16,7 +16,7 @@ use crate::error::SceneError;
 pub(super) use collider::GRAY;
 pub use collider::{Collider, ColliderShape};
 #[cfg(feature = "files")]
-pub(crate) use pattern::MOST_SAMPLES;
+pub(crate) use pattern::MOST_SPRITES;
 #[cfg(feature = "files")]
 pub(super) use pattern::{ACCELERATION_KEYS, CONTROL_KEYS, MIXTURE_KEYS};
 pub use pattern::{Acceleration, ControlPoint, Mixture};

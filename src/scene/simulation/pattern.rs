@@ -163,12 +163,12 @@ pub struct Mixture {
 keys! { pub(in crate::scene) MIXTURE_KEYS;
     probability: from_to(0.0, 1.0), NONE, Required,
         "which share of separate particles is so; the rest is as the wave says";
-    samples: Whole(1, MOST_SAMPLES), NONE, Value("12"), "1: a ball; more: a rod of so many";
+    samples: Whole(1, MOST_SPRITES), NONE, Value("12"), "1: a ball; more: a rod of so many";
     roundness: above_to(0.0, 1.0), NONE, Value("0.5"), "1: a rod with round ends; less: with sharp ones";
 }
 
 /// Samples of a rod, and of a thread.
-pub(crate) const MOST_SAMPLES: u32 = 1024;
+pub(crate) const MOST_SPRITES: u32 = 1024;
 
 pub(super) fn samples() -> u32 {
     12
@@ -209,11 +209,11 @@ pub(super) fn check_rod(samples: u32, roundness: f64) -> Checked {
 }
 
 pub(super) fn count(key: &'static str, count: u32) -> Checked {
-    match (1..=MOST_SAMPLES).contains(&count) {
+    match (1..=MOST_SPRITES).contains(&count) {
         true => Ok(()),
         false => Err(Fault::new(
             key,
-            format!("{count} of them; give from 1 to {MOST_SAMPLES}"),
+            format!("{count} of them; give from 1 to {MOST_SPRITES}"),
         )),
     }
 }

@@ -24,7 +24,7 @@ fn sample(key: &Key) -> String {
         Form::ColorOrFile => "\"#102030\"".to_owned(),
         Form::Matrix => format!("{:?}", glam::DMat4::IDENTITY.to_cols_array()),
         Form::Number(..) | Form::NumberOrNan | Form::NumberOr(..) => "0.5".to_owned(),
-        Form::Whole(least, _) => least.to_string(),
+        Form::Whole(least, _) => least.max(1).to_string(),
         Form::Flag => "true".to_owned(),
         Form::Text => "\"Z\"".to_owned(),
         Form::File => format!("\"{DEPTH}\""),
@@ -33,7 +33,9 @@ fn sample(key: &Key) -> String {
         Form::Numbers(least, _) => {
             format!("[{}]", ["1.5", "2.5", "0.5"][..least as usize].join(", "))
         }
-        Form::Vectors(least, _) => format!("[{}]", vec!["[1, 2, 3]"; least as usize].join(", ")),
+        Form::Vectors(least, _) => {
+            format!("[{}]", vec!["[1, 2, 3]"; least.max(1) as usize].join(", "))
+        }
         Form::Colors(least) => format!("[{}]", vec!["\"#ff8800\""; least as usize].join(", ")),
         Form::TrackValue => "0.5".to_owned(),
         Form::TrackValues(least) => format!("[{}]", vec!["0.5"; least as usize].join(", ")),

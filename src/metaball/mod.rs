@@ -1,0 +1,393 @@
+//! The metaballs: the engine that finds surfaces of particles' summed fields along rays, on an OpenCL device (Mishima,
+//! Tanaka, Sagawa 2008). Particles are sorted into cells anew for every frame. What it draws ends the rays of light.
+
+mod kernels;
+pub mod pack;
+mod plan;
+mod self_test;
+mod sources;
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::time::Duration;
+
+use opencl3::event::Event;
+
+use crate::cost::FrameCost;
+use crate::error::Result;
+use crate::image::{DepthAlong, DepthImage, ImageSize};
+use crate::opencl::{
+    Argument, Compute, DeviceBuffer, DeviceForm, Handle, Kernel, Pixel, RendererOptions, Uploaded,
+    UploadedShared, run_time,
+};
+use crate::scene::{Scene, SeenSurfaces};
+use kernels::Kernels;
+pub(crate) use kernels::build_text;
+use pack::{Particle, Point, Sight, Slab, Surface};
+use plan::{Plan, Variant};
+
+/// Cells that a work-item adds up, `CHUNK` of `cl/metaball/sort.cl`.
+const CHUNK: u32 = 256;
+
+/// Work-items in a group, which share nothing; of a CPU few enough that all cores are busy to the end.
+const GROUP: usize = 16;
+const GPU_GROUP: usize = 64;
+
+/// Rays, or particles, that a work-item carries side by side.
+const MOST_LANES: usize = 16;
+
+/// Units of rays of a launch: desktop GPUs kill launches of seconds.
+const UNITS: u32 = 1 << 16;
+
+/// The kernels and buffers of a device, which are kept from frame to frame.
+#[derive(Debug)]
+pub(crate) struct Surfaces {
+    options: RendererOptions,
+    kernels: HashMap<Variant, Kernels>,
+    /// Of which particles the packed ones are: revisions and radii.
+    known: Vec<(u64, u64)>,
+    packed: Vec<Point>,
+    points: Uploaded<Point>,
+    surfaces: Uploaded<Surface>,
+    slabs: Uploaded<Slab>,
+    depths: UploadedShared<f32>,
+    cells: Option<DeviceBuffer<u32>>,
+    sums: Option<DeviceBuffer<u32>>,
+    cell_of_point: Option<DeviceBuffer<u32>>,
+    order: Option<DeviceBuffer<u32>>,
+    particles: Option<DeviceBuffer<Particle>>,
+    /// Places and radii of particles in their cells, each in a plane of its own.
+    planes: Option<DeviceBuffer<f32>>,
+    squares: Option<DeviceBuffer<[u32; 2]>>,
+    lengths: Option<DeviceBuffer<f32>>,
+    light: Option<DeviceBuffer<Pixel>>,
+    under_way: Vec<Handle<Event>>,
+    /// How many of those sort particles, and how long they took.
+    sorting: (usize, Duration),
+    cost: FrameCost,
+}
+
+impl Surfaces {
+    /// Makes one without kernels: they are built when a scene first needs them.
+    pub(crate) fn new(options: &RendererOptions) -> Self {
+        Self {
+            options: options.clone(),
+            kernels: HashMap::new(),
+            known: Vec::new(),
+            packed: Vec::new(),
+            points: Uploaded::new("the particles"),
+            surfaces: Uploaded::new("the surfaces"),
+            slabs: Uploaded::new("the slabs of surfaces"),
+            depths: UploadedShared::new("the depth image"),
+            cells: None,
+            sums: None,
+            cell_of_point: None,
+            order: None,
+            particles: None,
+            planes: None,
+            squares: None,
+            lengths: None,
+            light: None,
+            under_way: Vec::new(),
+            sorting: (0, Duration::ZERO),
+            cost: FrameCost::default(),
+        }
+    }
+
+    /// Returns what the last frame cost.
+    pub(crate) fn cost(&self) -> FrameCost {
+        self.cost
+    }
+
+    /// Returns how long sorting particles into cells took in the last frame.
+    #[cfg(feature = "papers")]
+    pub(crate) fn sorting(&self) -> Duration {
+        self.sorting.1
+    }
+
+    /// Draws the surfaces of a valid scene, with so many rays across and down in a pixel, and reads them back.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
+    /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device);
+    /// [`Error::Unsupported`](crate::Error::Unsupported) for a camera with a shear.
+    pub(crate) fn draw(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        across: u32,
+    ) -> Result<SeenSurfaces> {
+        self.draw_by(compute, scene, across, None)
+    }
+
+    /// Draws by the kernels of a variant; `None`: of that which the scene needs.
+    fn draw_by(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        across: u32,
+        variant: Option<Variant>,
+    ) -> Result<SeenSurfaces> {
+        self.cost = FrameCost::default();
+        let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
+        let (sight, plane) = plan::sight(scene, across, lanes)?;
+        let mut plan = Plan::new(scene, &sight, &plane);
+        plan.variant = variant.unwrap_or(plan.variant);
+        self.prepare(compute, plan.variant)?;
+        self.upload(compute, scene, &plan)?;
+        self.reserve(compute, scene.image, &sight, &plan)?;
+        let drawn = self.enqueue(compute, &sight, &plan);
+        let settled = self.settle(compute);
+        drawn.and(settled)?;
+        self.read(compute, scene, &sight)
+    }
+
+    fn prepare(&mut self, compute: &Compute, variant: Variant) -> Result<()> {
+        if let Entry::Vacant(entry) = self.kernels.entry(variant) {
+            let (kernels, program) = Kernels::build(compute, variant, &self.options)?;
+            let tested =
+                self_test::self_test(compute, variant, &self.options, (kernels, &program))?;
+            entry.insert(tested);
+        }
+        Ok(())
+    }
+
+    fn upload(&mut self, compute: &Compute, scene: &Scene, plan: &Plan) -> Result<()> {
+        let stamp = |it: &crate::scene::Metaballs| (it.points.revision(), it.radius.to_bits());
+        let now: Vec<(u64, u64)> = scene.metaballs.iter().map(stamp).collect();
+        let is_known = self.known == now;
+        if !is_known {
+            self.packed.clear();
+            for metaballs in scene.metaballs.iter() {
+                pack::add_points(metaballs, &mut self.packed);
+            }
+            self.known = now;
+        }
+        self.points.upload_unless(is_known, compute, &self.packed)?;
+        self.surfaces.upload(compute, &plan.surfaces)?;
+        self.slabs.upload(compute, &plan.slabs)?;
+        let depths = scene.depth.as_ref().map(DepthImage::shared_values);
+        self.depths.upload(compute, depths)
+    }
+
+    fn reserve(
+        &mut self,
+        compute: &Compute,
+        image: ImageSize,
+        sight: &Sight,
+        plan: &Plan,
+    ) -> Result<()> {
+        let points = self.packed.len();
+        let cells = plan.cell_count as usize;
+        let rays = sight.width as usize * sight.height as usize;
+        let squares = plan.square_count as usize * plan.surfaces.len();
+        grow(&mut self.cells, compute, "the cells of particles", cells)?;
+        grow(
+            &mut self.sums,
+            compute,
+            "the sums of cells",
+            cells.div_ceil(CHUNK as usize),
+        )?;
+        grow(
+            &mut self.cell_of_point,
+            compute,
+            "the places of particles",
+            points,
+        )?;
+        grow(&mut self.order, compute, "the order of particles", points)?;
+        grow(
+            &mut self.particles,
+            compute,
+            "the particles in their cells",
+            points,
+        )?;
+        let planes = 4 * plane_of(points);
+        grow(&mut self.planes, compute, "the planes of particles", planes)?;
+        grow(
+            &mut self.squares,
+            compute,
+            "the slabs of squares of rays",
+            squares,
+        )?;
+        grow(&mut self.lengths, compute, "the lengths of rays", rays)?;
+        grow(
+            &mut self.light,
+            compute,
+            "the light of surfaces",
+            image.pixels(),
+        )
+    }
+
+    /// Enqueues all kernels of a frame.
+    fn enqueue(&mut self, compute: &Compute, sight: &Sight, plan: &Plan) -> Result<()> {
+        let Some(kernels) = self.kernels.get(&plan.variant) else {
+            return Ok(());
+        };
+        let (surface_count, point_count) = (plan.surfaces.len() as u32, self.packed.len() as u32);
+        let plane = plane_of(self.packed.len()) as u32;
+        let common: Vec<(&str, &dyn Argument)> = vec![
+            ("sight", sight),
+            ("surfaces", &self.surfaces),
+            ("surface_count", &surface_count),
+            ("slabs", &self.slabs),
+            ("points", &self.points),
+            ("point_count", &point_count),
+            ("cells", &self.cells),
+            ("cell_count", &plan.cell_count),
+            ("sums", &self.sums),
+            ("cell_of_point", &self.cell_of_point),
+            ("order", &self.order),
+            ("particles", &self.particles),
+            ("planes", &self.planes),
+            ("plane", &plane),
+            ("squares", &self.squares),
+            ("square_count", &plan.square_count),
+            ("depths", self.depths.argument()),
+            ("lengths", &self.lengths),
+            ("light", &self.light),
+        ];
+        let mut launches = Launches {
+            compute,
+            common,
+            under_way: &mut self.under_way,
+        };
+        launches.sort(kernels, plan)?;
+        self.sorting = (launches.under_way.len(), Duration::ZERO);
+        launches.draw(kernels, plan, sight)
+    }
+
+    /// Waits for what is under way, and adds up what it cost.
+    fn settle(&mut self, compute: &Compute) -> Result<()> {
+        let mut outcome = Ok(());
+        for (number, event) in self.under_way.drain(..).enumerate() {
+            match run_time(compute, &event) {
+                Ok(time) => {
+                    self.cost.kernel += time;
+                    if number < self.sorting.0 {
+                        self.sorting.1 += time;
+                    }
+                }
+                Err(error) => outcome = outcome.and(Err(error)),
+            }
+            self.cost.launches += 1;
+        }
+        outcome?;
+        self.points.settle(compute)?;
+        self.surfaces.settle(compute)?;
+        self.slabs.settle(compute)?;
+        self.depths.settle(compute)
+    }
+
+    fn read(&mut self, compute: &Compute, scene: &Scene, sight: &Sight) -> Result<SeenSurfaces> {
+        let size = ImageSize {
+            width: sight.width,
+            height: sight.height,
+        };
+        let mut lengths = vec![0.0; size.pixels()];
+        let mut light = vec![0.0; 4 * scene.image.pixels()];
+        if let (Some(from), Some(pixels)) = (&self.lengths, &self.light) {
+            from.read(compute, &mut lengths)?;
+            pixels.read(compute, bytemuck::cast_slice_mut(&mut light))?;
+        }
+        let along = match sight.is_along_axis {
+            0 => DepthAlong::Ray,
+            _ => DepthAlong::Axis,
+        };
+        Ok(SeenSurfaces {
+            depth: DepthImage::new(size, along, lengths)?,
+            light,
+        })
+    }
+}
+
+/// Returns the length of a plane of numbers of particles, behind which lanes may read.
+fn plane_of(points: usize) -> usize {
+    points + MOST_LANES
+}
+
+/// Makes sure that a buffer has room for so many elements.
+fn grow<T: bytemuck::Pod>(
+    buffer: &mut Option<DeviceBuffer<T>>,
+    compute: &Compute,
+    what: &str,
+    len: usize,
+) -> Result<()> {
+    if buffer.as_ref().is_none_or(|it| it.len() < len) {
+        *buffer = None;
+        *buffer = Some(DeviceBuffer::new(compute, what, len)?);
+    }
+    Ok(())
+}
+
+/// Launches of a frame, with the arguments that they have in common.
+struct Launches<'a> {
+    compute: &'a Compute,
+    common: Vec<(&'a str, &'a dyn Argument)>,
+    under_way: &'a mut Vec<Handle<Event>>,
+}
+
+impl Launches<'_> {
+    /// Launches a kernel over so many work-items, in groups of the wanted size or smaller.
+    fn launch(
+        &mut self,
+        kernel: &Kernel,
+        more: &[(&str, &dyn Argument)],
+        items: u32,
+        wanted: usize,
+    ) -> Result<()> {
+        if items == 0 {
+            return Ok(());
+        }
+        let mut arguments: Vec<(&str, &dyn Argument)> = self.common.clone();
+        arguments.extend(more);
+        arguments.retain(|(name, _)| kernel.parameters().iter().any(|it| it == name));
+        let wanted = match self.compute.device().form {
+            DeviceForm::Gpu if wanted > 1 => GPU_GROUP,
+            _ => wanted,
+        };
+        let group = kernel.group(self.compute, wanted)?;
+        let event = kernel.launch(self.compute, &arguments, items as usize, group)?;
+        self.under_way.push(event);
+        Ok(())
+    }
+
+    /// Sorts particles into cells.
+    fn sort(&mut self, kernels: &Kernels, plan: &Plan) -> Result<()> {
+        let chunks = plan.cell_count.div_ceil(CHUNK);
+        self.launch(&kernels.clear_cells, &[], chunks, GROUP)?;
+        for (number, surface) in (0_u32..).zip(&plan.surfaces) {
+            let count = surface.point_count;
+            self.launch(
+                &kernels.count_particles,
+                &[("number", &number)],
+                count,
+                GROUP,
+            )?;
+        }
+        self.launch(&kernels.sum_chunks, &[], chunks, GROUP)?;
+        self.launch(&kernels.begin_chunks, &[], 1, 1)?;
+        self.launch(&kernels.begin_cells, &[], chunks, GROUP)?;
+        let points = plan
+            .surfaces
+            .iter()
+            .map(|surface| surface.point_count)
+            .sum();
+        self.launch(&kernels.scatter_particles, &[], points, GROUP)?;
+        self.launch(&kernels.sort_cells, &[], chunks, GROUP)
+    }
+
+    /// Finds the slabs that matter, then the surfaces.
+    fn draw(&mut self, kernels: &Kernels, plan: &Plan, sight: &Sight) -> Result<()> {
+        let squares = plan.square_count;
+        for number in 0..plan.surfaces.len() as u32 {
+            self.launch(&kernels.find_slabs, &[("number", &number)], squares, GROUP)?;
+        }
+        let units = sight.width.div_ceil(sight.unit) * sight.height.div_ceil(sight.unit);
+        for first in (0..units).step_by(UNITS as usize) {
+            let end = units.min(first + UNITS);
+            let some: [(&str, &dyn Argument); 2] = [("first_unit", &first), ("end_unit", &end)];
+            self.launch(&kernels.draw_surfaces, &some, end - first, GROUP)?;
+        }
+        Ok(())
+    }
+}
