@@ -130,8 +130,8 @@ __kernel void draw_surfaces(const Sight sight, __global const Surface *const res
                             __global const Particle *const restrict particles,
                             __global const float *const restrict planes, const uint plane,
                             __global const uint2 *const restrict squares, __global const float *const restrict depths,
-                            const uint first_unit, const uint end_unit, __global float *const restrict lengths,
-                            __global float4 *const restrict light) {
+                            const uint first_unit, const uint end_unit, __global uint *const restrict counts,
+                            __global float *const restrict lengths, __global float4 *const restrict light) {
     const uint unit = first_unit + get_global_id(0);
     if (unit >= end_unit)
         return;
@@ -142,6 +142,9 @@ __kernel void draw_surfaces(const Sight sight, __global const Surface *const res
         gathered.light[pixel] = (float4)(0.0f);
     Near near;
     forget(&near);
+#ifdef COUNT_NODES
+    near.passes = near.pairs = 0u;
+#endif
     const uint last_column = min(first_column + sight.unit, sight.width);
     const uint last_row = min(first_row + sight.unit, sight.height);
     for (uint row = first_row; row < last_row; row += BLOCK_ROWS)
@@ -164,6 +167,10 @@ __kernel void draw_surfaces(const Sight sight, __global const Surface *const res
             const floatv length = select(given, found, march.is_hit);
             gather_block(&sight, column, row, first_column, first_row, &march, length, block_light, &gathered, lengths);
         }
+#ifdef COUNT_NODES
+    atomic_add(counts, near.passes);
+    atomic_add(counts + 1, near.pairs);
+#endif
     const uint pixels = sight.unit / sight.across, picture_width = sight.width / sight.across;
     const float share = 1.0f / (float)(sight.across * sight.across);
     for (uint y = 0u; y < pixels && first_row + y * sight.across < sight.height; ++y)

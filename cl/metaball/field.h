@@ -12,6 +12,13 @@ typedef struct {
     floatv field, slope, growth;
 } Sums;
 
+// Where passes are counted.
+#ifdef COUNT_NODES
+#define COUNT(counter, more) (counter) += (more)
+#else
+#define COUNT(counter, more)
+#endif
+
 #define TINY 1e-30f
 
 // Returns 1 / sqrt(x), x >= 0.
@@ -59,10 +66,12 @@ INLINE Sums field_along(const Search *const search, Window *const window, Near *
                         const floatv end) {
     Sums sums = {splat(0.0f), splat(0.0f), splat(0.0f)};
     const bool is_smooth = IS_SMOOTH(search->surface);
+    COUNT(near->passes, 1u);
     for (bool has_part = first_part(search, window, near); has_part; has_part = next_part(search, window, near))
         for (uint number = 0u; number < near->count; ++number) {
             const uint place = (near->begin + number) % ROOM;
             __global const Particle *const particle = search->particles + near->particle[place];
+            COUNT(near->pairs, 1u);
             add_field(&sums, particle, near, place, s, end, is_smooth);
         }
     return sums;

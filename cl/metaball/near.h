@@ -99,6 +99,9 @@ typedef struct {
     floatv enter[ROOM], leave[ROOM]; // where the rays come into its field, and leave it
     floatv growth[ROOM];             // the bound of its field's growth
     floatv most[ROOM];               // the most of its field on the rays
+#ifdef COUNT_NODES
+    uint passes, pairs; // over windows, and of rays and particles in them, LANES at a time
+#endif
 } Near;
 
 // A block of rays, one in every lane, and what it looks for particles in.

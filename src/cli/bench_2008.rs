@@ -2,6 +2,7 @@
 
 use energywave::papers::{Cell2008, methods_2008, table_2008};
 use energywave::scene::MetaballMethod;
+use energywave::{Renderer, RendererOptions};
 use serde::Serialize;
 
 use super::bench::{prepare, save, time};
@@ -26,6 +27,9 @@ struct MetaballCell {
     /// The part of the rays that meet the surface, and of those the part that the method misses.
     hit: f64,
     holes: f64,
+    /// A ray: places at which the summed field was taken, and fields of particles that were added up for it.
+    passes: f64,
+    pairs: f64,
     kernel_ms: f64,
     sort_ms: f64,
     frame: u32,
@@ -38,11 +42,15 @@ struct MetaballCell {
 
 pub fn run(arguments: &BenchArguments) -> Outcome {
     let (devices, mut renderer) = prepare(arguments)?;
+    let mut options = RendererOptions::default();
+    options.counts_samples = true;
+    options.skips_self_test = true; // those that draw have passed it
+    let mut counting = Renderer::on_devices(&devices, &options)?;
     let origin = Origin::now(&devices);
     let mut cells: Vec<MetaballCell> = Vec::new();
     for known in table_2008() {
         for method in methods_2008() {
-            let found = known.measure(&mut renderer, method, time(arguments))?;
+            let found = known.measure((&mut renderer, &mut counting), method, time(arguments))?;
             let (name, sampling) = match method {
                 MetaballMethod::Sampling(sampling) => ("sampling", Some(sampling)),
                 _ => ("exact", None),
@@ -71,6 +79,8 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
                 ratio: found.speed.fps / paper_fps,
                 hit: found.hit,
                 holes: found.holes,
+                passes: found.passes,
+                pairs: found.pairs,
                 kernel_ms: 1e3 * found.speed.kernel.as_secs_f64(),
                 sort_ms: 1e3 * found.sort.as_secs_f64(),
                 frame: found.speed.frame,
@@ -90,15 +100,15 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
 fn print_cell(cell: &MetaballCell, is_first: bool) -> Outcome {
     if is_first {
         print(
-            "particles resolution view method   samples       fps     paper   ratio    hit  holes  kernel ms  \
-             sort ms\n",
+            "particles resolution view method   samples       fps     paper   ratio    hit  holes passes   pairs  \
+             kernel ms  sort ms\n",
         )?;
     }
     let samples = cell
         .samples
         .map_or(String::new(), |samples| samples.to_string());
     print(&format!(
-        "{:>9} {:>10} {:<4} {:<8} {:>7} {:>9.2} {:>9.2} {:>7.2} {:>5.1}% {:>5.1}% {:>10.3} {:>8.3}\n",
+        "{:>9} {:>10} {:<4} {:<8} {:>7} {:>9.2} {:>9.2} {:>7.2} {:>5.1}% {:>5.1}% {:>6.1} {:>7.1} {:>10.3} {:>8.3}\n",
         cell.particles,
         cell.resolution,
         cell.view,
@@ -109,6 +119,8 @@ fn print_cell(cell: &MetaballCell, is_first: bool) -> Outcome {
         cell.ratio,
         100.0 * cell.hit,
         100.0 * cell.holes,
+        cell.passes,
+        cell.pairs,
         cell.kernel_ms,
         cell.sort_ms
     ))

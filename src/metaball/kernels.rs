@@ -37,6 +37,7 @@ impl Kernels {
             (variant.has_cones, " -D CONES"),
             (variant.has_smooth, " -D SMOOTH"),
             (variant.has_sampling, " -D SAMPLING"),
+            (options.counts_samples, " -D COUNT_NODES"),
         ] {
             definitions += if is_there { word } else { "" };
         }

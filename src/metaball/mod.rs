@@ -2,6 +2,7 @@
 //! Tanaka, Sagawa 2008). Particles are sorted into cells anew for every frame. What it draws ends the rays of light.
 
 mod kernels;
+mod launches;
 pub mod pack;
 mod plan;
 mod self_test;
@@ -17,27 +18,31 @@ use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{
-    Argument, Compute, DeviceBuffer, DeviceForm, Handle, Kernel, Pixel, RendererOptions, Uploaded,
-    UploadedShared, run_time,
+    Argument, Compute, DeviceBuffer, Handle, Pixel, RendererOptions, Uploaded, UploadedShared,
+    run_time,
 };
 use crate::scene::{Scene, SeenSurfaces};
 use kernels::Kernels;
 pub(crate) use kernels::build_text;
+use launches::Launches;
 use pack::{Particle, Point, Sight, Slab, Surface};
 use plan::{Plan, Variant};
 
 /// Cells that a work-item adds up, `CHUNK` of `cl/metaball/sort.cl`.
 const CHUNK: u32 = 256;
 
-/// Work-items in a group, which share nothing; of a CPU few enough that all cores are busy to the end.
-const GROUP: usize = 16;
-const GPU_GROUP: usize = 64;
-
 /// Rays, or particles, that a work-item carries side by side.
 const MOST_LANES: usize = 16;
 
-/// Units of rays of a launch: desktop GPUs kill launches of seconds.
-const UNITS: u32 = 1 << 16;
+/// What finding surfaces took, of all rays together.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct SurfaceCounts {
+    /// Places at which the summed field was taken.
+    pub passes: u64,
+    /// Fields of particles that were added up there.
+    pub pairs: u64,
+}
 
 /// The kernels and buffers of a device, which are kept from frame to frame.
 #[derive(Debug)]
@@ -61,6 +66,9 @@ pub(crate) struct Surfaces {
     squares: Option<DeviceBuffer<[u32; 2]>>,
     lengths: Option<DeviceBuffer<f32>>,
     light: Option<DeviceBuffer<Pixel>>,
+    /// Of passes and pairs, `LANES` at a time.
+    counts: Option<DeviceBuffer<u32>>,
+    counted: SurfaceCounts,
     under_way: Vec<Handle<Event>>,
     /// How many of those sort particles, and how long they took.
     sorting: (usize, Duration),
@@ -88,6 +96,8 @@ impl Surfaces {
             squares: None,
             lengths: None,
             light: None,
+            counts: None,
+            counted: SurfaceCounts::default(),
             under_way: Vec::new(),
             sorting: (0, Duration::ZERO),
             cost: FrameCost::default(),
@@ -103,6 +113,12 @@ impl Surfaces {
     #[cfg(feature = "papers")]
     pub(crate) fn sorting(&self) -> Duration {
         self.sorting.1
+    }
+
+    /// Returns what was counted in the last frame, if anything was.
+    #[cfg(feature = "papers")]
+    pub(crate) fn counted(&self) -> SurfaceCounts {
+        self.counted
     }
 
     /// Draws the surfaces of a valid scene, with so many rays across and down in a pixel, and reads them back.
@@ -201,6 +217,10 @@ impl Surfaces {
             "the particles in their cells",
             points,
         )?;
+        grow(&mut self.counts, compute, "the counts of passes", 2)?;
+        if let (Some(counts), true) = (&mut self.counts, self.options.counts_samples) {
+            counts.write(compute, &[0; 2])?;
+        }
         let planes = 4 * plane_of(points);
         grow(&mut self.planes, compute, "the planes of particles", planes)?;
         grow(
@@ -245,6 +265,7 @@ impl Surfaces {
             ("depths", self.depths.argument()),
             ("lengths", &self.lengths),
             ("light", &self.light),
+            ("counts", &self.counts),
         ];
         let mut launches = Launches {
             compute,
@@ -278,11 +299,24 @@ impl Surfaces {
         self.depths.settle(compute)
     }
 
+    fn read_counts(&mut self, compute: &Compute) -> Result<()> {
+        if let (Some(counts), true) = (&self.counts, self.options.counts_samples) {
+            let mut found = [0; 2];
+            counts.read(compute, &mut found)?;
+            let lanes = u64::from(self.options.lanes.unwrap_or(compute.device().lanes));
+            let [passes, pairs] = found.map(|count| u64::from(count) * lanes);
+            self.counted = SurfaceCounts { passes, pairs };
+            self.cost.samples = pairs;
+        }
+        Ok(())
+    }
+
     fn read(&mut self, compute: &Compute, scene: &Scene, sight: &Sight) -> Result<SeenSurfaces> {
         let size = ImageSize {
             width: sight.width,
             height: sight.height,
         };
+        self.read_counts(compute)?;
         let mut lengths = vec![0.0; size.pixels()];
         let mut light = vec![0.0; 4 * scene.image.pixels()];
         if let (Some(from), Some(pixels)) = (&self.lengths, &self.light) {
@@ -317,77 +351,4 @@ fn grow<T: bytemuck::Pod>(
         *buffer = Some(DeviceBuffer::new(compute, what, len)?);
     }
     Ok(())
-}
-
-/// Launches of a frame, with the arguments that they have in common.
-struct Launches<'a> {
-    compute: &'a Compute,
-    common: Vec<(&'a str, &'a dyn Argument)>,
-    under_way: &'a mut Vec<Handle<Event>>,
-}
-
-impl Launches<'_> {
-    /// Launches a kernel over so many work-items, in groups of the wanted size or smaller.
-    fn launch(
-        &mut self,
-        kernel: &Kernel,
-        more: &[(&str, &dyn Argument)],
-        items: u32,
-        wanted: usize,
-    ) -> Result<()> {
-        if items == 0 {
-            return Ok(());
-        }
-        let mut arguments: Vec<(&str, &dyn Argument)> = self.common.clone();
-        arguments.extend(more);
-        arguments.retain(|(name, _)| kernel.parameters().iter().any(|it| it == name));
-        let wanted = match self.compute.device().form {
-            DeviceForm::Gpu if wanted > 1 => GPU_GROUP,
-            _ => wanted,
-        };
-        let group = kernel.group(self.compute, wanted)?;
-        let event = kernel.launch(self.compute, &arguments, items as usize, group)?;
-        self.under_way.push(event);
-        Ok(())
-    }
-
-    /// Sorts particles into cells.
-    fn sort(&mut self, kernels: &Kernels, plan: &Plan) -> Result<()> {
-        let chunks = plan.cell_count.div_ceil(CHUNK);
-        self.launch(&kernels.clear_cells, &[], chunks, GROUP)?;
-        for (number, surface) in (0_u32..).zip(&plan.surfaces) {
-            let count = surface.point_count;
-            self.launch(
-                &kernels.count_particles,
-                &[("number", &number)],
-                count,
-                GROUP,
-            )?;
-        }
-        self.launch(&kernels.sum_chunks, &[], chunks, GROUP)?;
-        self.launch(&kernels.begin_chunks, &[], 1, 1)?;
-        self.launch(&kernels.begin_cells, &[], chunks, GROUP)?;
-        let points = plan
-            .surfaces
-            .iter()
-            .map(|surface| surface.point_count)
-            .sum();
-        self.launch(&kernels.scatter_particles, &[], points, GROUP)?;
-        self.launch(&kernels.sort_cells, &[], chunks, GROUP)
-    }
-
-    /// Finds the slabs that matter, then the surfaces.
-    fn draw(&mut self, kernels: &Kernels, plan: &Plan, sight: &Sight) -> Result<()> {
-        let squares = plan.square_count;
-        for number in 0..plan.surfaces.len() as u32 {
-            self.launch(&kernels.find_slabs, &[("number", &number)], squares, GROUP)?;
-        }
-        let units = sight.width.div_ceil(sight.unit) * sight.height.div_ceil(sight.unit);
-        for first in (0..units).step_by(UNITS as usize) {
-            let end = units.min(first + UNITS);
-            let some: [(&str, &dyn Argument); 2] = [("first_unit", &first), ("end_unit", &end)];
-            self.launch(&kernels.draw_surfaces, &some, end - first, GROUP)?;
-        }
-        Ok(())
-    }
 }

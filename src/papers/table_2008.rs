@@ -80,6 +80,10 @@ pub struct Speed2008 {
     pub holes: f64,
     /// Time in which particles were sorted into cells, a frame.
     pub sort: Duration,
+    /// Places of a ray at which the summed field was taken, and fields of particles that were added up for it.
+    pub passes: f64,
+    /// See `passes`. A ray counts those of all rays that are side by side with it in one vector.
+    pub pairs: f64,
 }
 
 impl Cell2008 {
@@ -115,17 +119,20 @@ impl Cell2008 {
         Ok(scene)
     }
 
-    /// Measures the cell by a method.
+    /// Measures the cell by a method; a second renderer, which counts samples, counts a frame's.
     ///
     /// # Errors
     /// As [`measure`].
     pub fn measure(
         &self,
-        renderer: &mut Renderer,
+        (renderer, counting): (&mut Renderer, &mut Renderer),
         method: MetaballMethod,
         time: Duration,
     ) -> Result<Speed2008> {
         let scene = self.scene(method)?;
+        counting.see_surfaces(&scene)?;
+        let counts = counting.surface_counts();
+        let per_ray = |count: u64| count as f64 / scene.image.pixels() as f64;
         let speed = measure(renderer, &scene, time)?;
         let sort = renderer.surface_sorting();
         let mut lengths = |method| -> Result<Vec<f32>> {
@@ -141,6 +148,8 @@ impl Cell2008 {
             hit: hits as f64 / exact.len() as f64,
             holes: missed.count() as f64 / hits.max(1) as f64,
             sort,
+            passes: per_ray(counts.passes),
+            pairs: per_ray(counts.pairs),
         })
     }
 }

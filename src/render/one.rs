@@ -7,6 +7,8 @@ use crate::bloom::Spreader;
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
 use crate::image::{Bloom, ImageSize};
+#[cfg(feature = "papers")]
+use crate::metaball::SurfaceCounts;
 use crate::metaball::Surfaces;
 use crate::opencl::{
     Compute, Film, HostDepths, HostLink, MappedFilm, OpenClDevice, Pixel, RendererOptions,
@@ -98,6 +100,12 @@ impl DeviceRenderer {
     #[cfg(feature = "papers")]
     pub(crate) fn surface_sorting(&self) -> Duration {
         self.surfaces.sorting()
+    }
+
+    /// Returns what [`Surfaces::counted`] says.
+    #[cfg(feature = "papers")]
+    pub(crate) fn surface_counts(&self) -> SurfaceCounts {
+        self.surfaces.counted()
     }
 
     /// Finds the surfaces of a valid scene, and returns what that cost, too.

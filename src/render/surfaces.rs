@@ -10,6 +10,8 @@ use super::{Renderer, RendererBackend, whole};
 use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{Bloom, RadianceImage, kept_image};
+#[cfg(feature = "papers")]
+use crate::metaball::SurfaceCounts;
 use crate::reference;
 use crate::scene::{Scene, SeenSurfaces};
 
@@ -99,6 +101,16 @@ impl Renderer {
             RendererBackend::OpenCl(renderer) => renderer.surface_sorting(),
             RendererBackend::Several(renderer) => renderer.first().surface_sorting(),
             RendererBackend::Reference { .. } => Duration::ZERO,
+        }
+    }
+
+    /// Returns what finding surfaces took in the last frame, if that was counted.
+    #[cfg(feature = "papers")]
+    pub(crate) fn surface_counts(&mut self) -> SurfaceCounts {
+        match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.surface_counts(),
+            RendererBackend::Several(renderer) => renderer.first().surface_counts(),
+            RendererBackend::Reference { .. } => SurfaceCounts::default(),
         }
     }
 

@@ -103,8 +103,7 @@ pub(crate) const AMBIENT: f64 = 0.1;
 /// the view; of any length.
 pub(crate) const LAMP: DVec3 = DVec3::new(-0.55, -0.7, -0.7);
 
-/// The radius and the threshold of 2008.
-pub(super) const RADIUS_2008: f64 = 0.61;
+/// The threshold of 2008.
 pub(super) const THRESHOLD_2008: f64 = 0.765_625;
 
 impl Metaballs {

@@ -5,9 +5,13 @@
 use crate::common;
 use crate::common::host::Host;
 use energywave::image::{Bloom, DepthAlong};
-use energywave::scene::{Method, Profile};
+use energywave::internals::see_surfaces;
+use energywave::scene::{
+    MetaballKernel, MetaballMethod, MetaballSampling, Metaballs, Method, PointList, Profile,
+};
 use energywave::verify::built_in_rays;
 use energywave::{HostDepth, HostDepthMemory, RadianceImage, Renderer, RendererOptions, Scene};
+use glam::DVec3;
 use opencl3::memory::{
     CL_FLOAT, CL_HALF_FLOAT, CL_MEM_HOST_NO_ACCESS, CL_MEM_READ_WRITE, CL_RGBA, ClMem,
 };
@@ -251,4 +255,34 @@ fn a_bloom() {
     let sum = |image: &RadianceImage| image.as_slice().iter().sum::<f32>();
     let (before, after) = (sum(&before), sum(&after));
     assert!((after - before).abs() < 1e-4 * before, "{before} {after}");
+}
+
+#[test]
+fn surfaces_are_found_within_the_memory_that_there_is() {
+    let device = common::device();
+    let widths = common::lane_widths().into_iter();
+    for lanes in widths.filter(|lanes| is_simulator() || *lanes == device.lanes) {
+        let mut renderer = common::renderer(lanes, "");
+        for (kernel, method) in [
+            (MetaballKernel::Cone, MetaballMethod::Exact),
+            (
+                MetaballKernel::Smooth,
+                MetaballMethod::Sampling(MetaballSampling::default()),
+            ),
+        ] {
+            // More coincident particles than a window keeps, and others around them; sizes that are multiples of
+            // nothing.
+            let mut points = vec![DVec3::new(0.1, 0.2, 0.0); 300];
+            points.extend((0..30).map(|k| DVec3::new(0.1 * f64::from(k) - 1.5, 0.3, 0.2)));
+            let mut scene = common::empty_scene(21, 13);
+            scene.metaballs.push(Metaballs {
+                kernel,
+                method,
+                ..Metaballs::new(PointList::new(points).unwrap(), 0.6)
+            });
+            let (lengths, _) = see_surfaces(&mut renderer, &scene).unwrap();
+            assert_eq!(lengths.len(), 21 * 13);
+            assert!(lengths.iter().any(|length| length.is_finite()));
+        }
+    }
 }

@@ -226,11 +226,17 @@ fn a_bench_of_nothing_that_exists_is_refused() {
 #[test]
 fn a_cell_of_2008_says_what_is_hit_and_what_samples_miss() {
     let mut renderer = common::renderer(common::device().lanes, "");
+    let mut options = common::options(common::device().lanes, "");
+    options.counts_samples = true;
+    let mut counting = Renderer::with_options(&common::device(), &options).unwrap();
     let cell = table_2008()[0];
     let [exact, few, many] = methods_2008().map(|method| {
-        let found = cell.measure(&mut renderer, method, Duration::ZERO).unwrap();
+        let found = cell
+            .measure((&mut renderer, &mut counting), method, Duration::ZERO)
+            .unwrap();
         assert!(found.speed.fps > 0.0 && found.sort > Duration::ZERO);
         assert!(found.sort < found.speed.times.greatest);
+        assert!(found.passes > 1.0 && found.pairs > found.passes);
         (found.hit, found.holes)
     });
     assert!((0.1..0.4).contains(&exact.0) && exact.1 == 0.0, "{exact:?}");

@@ -8,12 +8,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::SceneError;
 use crate::scene::colors::read_color;
-use crate::scene::metaballs::{MOST_SAMPLES, RADIUS_2008, THRESHOLD_2008};
+use crate::scene::metaballs::{MOST_SAMPLES, THRESHOLD_2008};
 use crate::scene::values::{Fault, read_pair, read_vector, read_vectors};
 use crate::scene::{
     Lattice, MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs,
     PointList,
 };
+
+/// The radius of 2008, world units.
+const RADIUS_2008: f64 = 0.61;
 
 /// A surface as a file describes it. Keys of all methods may stand there, whichever is chosen.
 #[derive(Debug, Clone, Deserialize, Serialize)]

@@ -9,6 +9,7 @@ mod npy;
 #[cfg(feature = "files")]
 mod ply;
 
+use std::fmt;
 use std::path::Path;
 #[cfg(feature = "files")]
 use std::path::PathBuf;
@@ -36,10 +37,9 @@ const MOST_POINTS: usize = 1 << 27;
 /// assert!(PointList::new(vec![DVec3::NAN]).is_err());
 /// # Ok::<(), energywave::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct PointList(Arc<Points>);
 
-#[derive(Debug)]
 struct Points {
     positions: Vec<DVec3>,
     sizes: Option<Vec<PointSize>>,
@@ -223,6 +223,13 @@ fn check_sizes(count: usize, sizes: &[PointSize]) -> std::result::Result<(), Str
         }
     }
     Ok(())
+}
+
+/// Says how many there are; a million would fill a screen for hours.
+impl fmt::Debug for PointList {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "PointList({} points, {:?})", self.len(), self.0.origin)
+    }
 }
 
 impl Default for PointList {
