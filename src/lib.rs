@@ -52,6 +52,7 @@ mod error;
 pub mod image;
 #[doc(hidden)]
 pub mod internals;
+mod light;
 mod memory;
 mod metaball;
 #[cfg(feature = "files")]

@@ -60,10 +60,11 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 12] = [
+const LAYERS: [(&str, &[&str]); 13] = [
     ("image", &[]),
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
+    ("light", &["image", "opencl", "scene"]),
     ("metaball", &["image", "opencl", "scene"]),
     ("scene", &["image"]),
     ("particle", &["scene"]),
@@ -76,7 +77,9 @@ const LAYERS: [(&str, &[&str]); 12] = [
             "image",
             "opencl",
             "bloom",
+            "light",
             "metaball",
+            "particle",
             "scene",
             "reference",
             "wave",
@@ -92,6 +95,7 @@ const LAYERS: [(&str, &[&str]); 12] = [
         &[
             "opencl",
             "bloom",
+            "light",
             "metaball",
             "scene",
             "reference",
@@ -210,6 +214,7 @@ fn every_file_of_cl_is_embedded_once() {
     let lists = [
         "src/wave/kinds.rs",
         "src/bloom/sources.rs",
+        "src/light/sources.rs",
         "src/metaball/sources.rs",
         "src/opencl/source.rs",
     ];

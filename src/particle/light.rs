@@ -15,36 +15,10 @@ use glam::DVec3;
 
 use super::laws::Laws;
 use super::state::{Body, Impact, Phase};
-use crate::scene::{EmittedWave, ParticleShape};
+use crate::scene::{EmittedWave, LightElement, ParticleShape};
 
 /// The last sprite of a thread is so much smaller than the first.
 const THREAD_END: f64 = 0.2;
-
-/// Light that a particle gives off: `light (1 - d/radius)^2` where d, the distance to a point or a segment, is less
-/// than the radius; outside of it nothing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum LightElement {
-    /// Around a point.
-    Ball {
-        /// World space.
-        center: DVec3,
-        /// World units, positive.
-        radius: f64,
-        /// Linear RGB: colour times coefficient, faded by the particle's age.
-        light: DVec3,
-    },
-    /// Around a segment.
-    Streak {
-        /// World space; they may be one point.
-        ends: [DVec3; 2],
-        /// At the first end, half way and at the second, linear between; world units, positive.
-        radii: [f64; 3],
-        /// Linear RGB: colour times coefficient, faded by the particle's age, so that the streak holds the light of the
-        /// sprites whose place it takes.
-        light: DVec3,
-    },
-}
 
 /// A particle as it is shown.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 //! that are functions of the particle and no library's sines, so that it is the same on every machine, to the bit.
 //!
 //! A [`Simulation`] gives, for every frame, the light of all particles ([`LightElement`]) and where they hit something
-//! ([`Contact`]). Nothing of it is drawn yet.
+//! ([`Contact`]). The renderer draws that light.
 
 mod force;
 mod history;
@@ -22,11 +22,12 @@ use glam::DVec3;
 
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
+pub use crate::scene::LightElement;
 use crate::scene::{Collider, EmittedWave, LAST_FRAME, List, Scene};
 use history::History;
 use laws::Laws;
-pub use light::LightElement;
 use light::Shown;
+pub(crate) use solid::Solid;
 use state::{BYTES, Body, Phase, State};
 
 /// States that are held at once: that of a frame, that of the one after, and one that is kept.

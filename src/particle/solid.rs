@@ -12,7 +12,7 @@ const TOUCH: f64 = 1e-12;
 const INWARD: f64 = 1e-9;
 
 #[derive(Debug, Clone)]
-pub(super) struct Solid {
+pub(crate) struct Solid {
     form: Form,
     /// Within this distance below its surface a point lies on it, world units.
     touch: f64,
@@ -38,7 +38,7 @@ enum Form {
 
 /// Where a motion enters a solid.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Entry {
+pub(crate) struct Entry {
     /// How much of the motion is done, 0 to the most that was asked for.
     pub share: f64,
     /// Outwards, of length 1.
@@ -46,7 +46,7 @@ pub(super) struct Entry {
 }
 
 impl Solid {
-    pub(super) fn new(collider: &Collider) -> Self {
+    pub(crate) fn new(collider: &Collider) -> Self {
         let (form, size) = match collider.shape {
             ColliderShape::Box {
                 center,
@@ -111,7 +111,7 @@ impl Solid {
     }
 
     /// Returns where a motion from a point first enters from outside, within so many times itself.
-    pub(super) fn entry(&self, point: DVec3, motion: DVec3, most: f64) -> Option<Entry> {
+    pub(crate) fn entry(&self, point: DVec3, motion: DVec3, most: f64) -> Option<Entry> {
         let entry = match &self.form {
             Form::Box { center, half, axes } => {
                 let (place, own) = (*axes * (point - *center), *axes * motion);

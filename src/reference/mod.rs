@@ -5,6 +5,7 @@
 
 mod field;
 mod footprint;
+mod particles;
 mod quadrature;
 mod surface;
 
@@ -20,6 +21,8 @@ pub use quadrature::integrate;
 pub(crate) use surface::see_surfaces;
 #[doc(hidden)]
 pub use surface::{SurfaceRay, surface_rays};
+
+use particles::Particles;
 
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
@@ -188,7 +191,7 @@ fn simpson_nodes(divisions: u32) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// Renders the scene's linear radiance in float64, every integral to [`RELATIVE_ERROR`], whatever the scene's method.
+/// Renders the scene's linear radiance in float64, without waves and colliders, every integral to [`RELATIVE_ERROR`], whatever the scene's method.
 /// Where pixels are means over their squares ([`crate::scene::Antialias`]), those next to cores are means of many rays,
 /// within about 1e-3 where a core is a thirtieth of a pixel thick at least. Runs on all cores.
 ///
@@ -253,7 +256,9 @@ pub(crate) fn render_rows(
     for (band, pixels) in target.chunks_mut(4 * band_len).enumerate() {
         threads::for_each_chunk(pixels, 4, |i, pixel| {
             let index = first + band * band_len + i;
-            let light = tracer.pixel(scene, &plane, index).as_vec3();
+            let light =
+                tracer.pixel(scene, &plane, index) + tracer.of_particles(scene, &plane, index);
+            let light = light.as_vec3();
             pixel.copy_from_slice(&[light.x, light.y, light.z, 1.0]);
         });
         if progress((band + 1) as f32 / band_count as f32).is_break() {
@@ -266,6 +271,7 @@ pub(crate) fn render_rows(
 /// A scene ready to be integrated along rays.
 pub(crate) struct Tracer {
     sources: Vec<Source>,
+    particles: Particles,
     integrand: Integrand,
     method: Method,
     integration: Integration,
@@ -273,13 +279,15 @@ pub(crate) struct Tracer {
 
 impl Tracer {
     pub(crate) fn new(scene: &Scene, method: Method) -> Self {
+        let integrand = Integrand {
+            decay: scene.decay,
+            absorption: scene.absorption,
+            softening: scene.integration.softening,
+        };
         Self {
             sources: sources(scene),
-            integrand: Integrand {
-                decay: scene.decay,
-                absorption: scene.absorption,
-                softening: scene.integration.softening,
-            },
+            particles: Particles::new(scene, integrand),
+            integrand,
             method,
             integration: scene.integration,
         }
@@ -336,12 +344,26 @@ impl Tracer {
         emission * reduction.of(integral)
     }
 
+    /// Returns the light of particles along the ray through the middle of a pixel, whatever the method.
+    fn of_particles(&self, scene: &Scene, plane: &ViewPlane, index: usize) -> DVec3 {
+        if self.particles.len() == 0 {
+            return DVec3::ZERO;
+        }
+        let width = scene.image.width as usize;
+        let ray = plane.ray((index % width) as u32, (index / width) as u32);
+        let end = scene.depth.as_ref().map_or(1.0, |depth| {
+            plane.end(&ray, depth.as_slice()[index], depth.along())
+        });
+        self.particles.light(&ray, end) * self.integration.scale(ray.span.length())
+    }
+
     /// Returns how many pixels take some tenths of a second, at 50 ns a sample.
     fn band_len(&self) -> usize {
         let samples = self
             .method
             .samples()
             .map_or(500, |samples| samples as usize);
-        (10_000_000 / (samples * self.sources.len().max(1))).clamp(16, 16384)
+        let count = self.sources.len() + self.particles.len();
+        (10_000_000 / (samples * count.max(1))).clamp(16, 16384)
     }
 }

@@ -117,9 +117,15 @@ impl Renderer {
                 "the scene's are finer than its pixels; a host's memory takes one for each pixel";
             return Err(unfit("depth", reason));
         }
-        if !scene.metaballs.is_empty() {
+        let simulated = self.simulated(scene)?;
+        let scene = simulated.as_ref().unwrap_or(scene);
+        if scene.has_surfaces() {
+            let what = match scene.metaballs.is_empty() {
+                true => "collider",
+                false => "metaballs",
+            };
             let reason = "frames for a host have no surfaces; render them into an image (Renderer::render_into)";
-            return Err(unfit("metaballs", reason));
+            return Err(unfit(what, reason));
         }
         let bloom = self.bloom_of(scene);
         match &mut self.backend {
@@ -146,7 +152,7 @@ impl DeviceRenderer {
     ) -> Result<Event> {
         self.bloom_cost = FrameCost::default();
         let Self {
-            wave,
+            engines,
             spreader,
             film,
             host,
@@ -179,15 +185,13 @@ impl DeviceRenderer {
                 }
                 None => None,
             };
-            let plan = wave.plan_behind(compute, scene, depths, film.format())?;
-            wave.begin(compute, &plan, scene.image.pixels())?;
+            let plan = engines.plan(compute, scene, depths, film.format())?;
+            let pixels = scene.image.pixels();
+            engines.begin(compute, &plan, pixels)?;
+            engines.draw_unwatched(compute, &plan, pixels, film, bloom.is_some())?;
             let Some(bloom) = bloom else {
-                return wave.draw_unwatched(compute, &plan, film);
+                return Ok(());
             };
-            film.leave_unfinished(true);
-            let drawn = wave.draw_unwatched(compute, &plan, film);
-            film.leave_unfinished(false);
-            drawn?;
             spreader.spread(compute, film, scene.image, &bloom)
         };
         let mut drawn = draw(film);

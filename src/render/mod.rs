@@ -2,6 +2,7 @@
 
 mod bloom;
 mod device;
+mod engines;
 mod host;
 mod host_depth;
 mod layers;
@@ -12,6 +13,7 @@ mod referenced;
 mod several;
 mod shares;
 mod shutter;
+mod stage;
 mod surfaces;
 
 use std::ops::{ControlFlow, Deref, Range};
@@ -31,6 +33,7 @@ use one::{DeviceRenderer, Rows};
 use referenced::{draw_reference, reference_cost};
 use several::SeveralRenderer;
 use shutter::Shutter;
+use stage::Stage;
 
 /// An image in the renderer's own memory, linear RGBA by rows, readable until it is dropped.
 #[derive(Debug)]
@@ -70,6 +73,8 @@ pub struct Renderer {
     has_light: bool,
     /// An image that is put together of parts, and lent.
     kept: Option<RadianceImage>,
+    /// What is made of scenes before their light is drawn.
+    stage: Stage,
     /// What means over time keep.
     shutter: Shutter,
     /// At how many moments the last frame was drawn.
@@ -143,6 +148,7 @@ impl Renderer {
             cost_before: FrameCost::default(),
             has_light: true,
             kept: None,
+            stage: Stage::default(),
             shutter: Shutter::default(),
             moments: 0,
         }
@@ -274,7 +280,7 @@ impl Renderer {
     pub fn render_mapped(&mut self, scene: &Scene) -> Result<MappedImage<'_>> {
         self.check(scene)?;
         let bloom = self.bloom_of(scene);
-        if !scene.metaballs.is_empty() || self.has_layers(scene)? {
+        if scene.has_stage() || self.has_layers(scene)? {
             let values = self.keep_drawn(scene, bloom)?;
             return Ok(MappedImage(MappedBackend::Host(values)));
         }
@@ -324,13 +330,18 @@ impl Renderer {
     /// ray's place in the list takes the place of its pixel's number.
     ///
     /// # Errors
-    /// As [`Renderer::render`]; [`Error::Scene`] also for a ray that [`Ray::fault`] refuses.
+    /// As [`Renderer::render`]; [`Error::Scene`] also for a ray that [`Ray::fault`] refuses; [`Error::Unsupported`] for
+    /// a scene with particles.
     pub fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<[f64; 3]>> {
         self.check(scene)?;
         for (index, ray) in rays.iter().enumerate() {
             if let Some(fault) = ray.fault() {
                 return Err(SceneError::value(format!("ray {index}"), fault).into());
             }
+        }
+        if scene.has_particles() {
+            let message = "particles are seen in pictures only; integrate along rays without them";
+            return Err(Error::Unsupported(message.to_owned()));
         }
         let pixels = match &mut self.backend {
             RendererBackend::OpenCl(renderer) => renderer.integrate(scene, rays)?,

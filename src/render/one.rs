@@ -3,6 +3,7 @@
 use std::ops::{ControlFlow, Range};
 use std::time::{Duration, Instant};
 
+use super::engines::{Engines, FramePlan};
 use crate::bloom::Spreader;
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
@@ -14,13 +15,13 @@ use crate::opencl::{
     Compute, Film, HostDepths, HostLink, MappedFilm, OpenClDevice, Pixel, RendererOptions,
 };
 use crate::scene::{Ray, Scene, SeenSurfaces};
-use crate::wave::{Plan, Wave};
+use crate::wave::Wave;
 
 /// A device with its engines and its film, which are kept from frame to frame.
 #[derive(Debug)]
 pub(crate) struct DeviceRenderer {
     // Dropped in this order: what uses the context before the context.
-    pub(super) wave: Wave,
+    pub(super) engines: Engines,
     pub(super) spreader: Spreader,
     pub(super) surfaces: Surfaces,
     /// Of the bloom of the last frame.
@@ -66,7 +67,7 @@ impl DeviceRenderer {
     ) -> Result<Self> {
         check_known(compute.device(), options)?;
         Ok(Self {
-            wave: Wave::new(&compute, options)?,
+            engines: Engines::new(&compute, options)?,
             spreader: Spreader::new(options),
             surfaces: Surfaces::new(options),
             bloom_cost: FrameCost::default(),
@@ -79,7 +80,7 @@ impl DeviceRenderer {
     }
 
     pub(crate) fn wave(&mut self) -> &mut Wave {
-        &mut self.wave
+        &mut self.engines.wave
     }
 
     /// Returns how much more of the host's memory a frame of so many pixels takes, beside the image, bytes.
@@ -93,7 +94,7 @@ impl DeviceRenderer {
 
     /// Returns what the last frame cost.
     pub(crate) fn cost(&self) -> FrameCost {
-        self.wave.cost().then(self.bloom_cost)
+        self.engines.cost().then(self.bloom_cost)
     }
 
     /// Returns what [`Surfaces::sorting`] says.
@@ -118,13 +119,14 @@ impl DeviceRenderer {
 
     /// Returns what [`Wave::grain_rows`] says.
     pub(crate) fn grain_rows(&mut self, scene: &Scene) -> u32 {
-        self.wave.grain_rows(scene)
+        self.engines.wave.grain_rows(scene)
     }
 
     /// Plans a frame of a valid scene.
-    pub(super) fn plan(&mut self, scene: &Scene) -> Result<Plan> {
+    pub(super) fn plan(&mut self, scene: &Scene) -> Result<FramePlan> {
         self.bloom_cost = FrameCost::default();
-        self.wave.plan(&self.compute, scene, self.film.format())
+        let format = self.film.format();
+        self.engines.plan(&self.compute, scene, None, format)
     }
 
     /// Renders some rows of a valid scene, and returns the time from the first launch on unless kernels had to be
@@ -135,9 +137,9 @@ impl DeviceRenderer {
         wanted: Rows<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<Option<Duration>> {
-        let built = self.wave.kernel_count();
+        let built = self.engines.kernel_count();
         let plan = self.plan(scene)?;
-        let is_built = self.wave.kernel_count() == built;
+        let is_built = self.engines.kernel_count() == built;
         let begun = Instant::now();
         let Rows {
             rows,
@@ -177,7 +179,7 @@ impl DeviceRenderer {
 
     /// Returns linear RGBA along single rays; light is measured over the parameter s.
     pub(crate) fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<Pixel>> {
-        let plan = self.wave.plan_rays(&self.compute, scene, rays)?;
+        let plan = self.engines.plan_rays(&self.compute, scene, rays)?;
         let mut radiances = vec![[0.0; 4]; rays.len()];
         let mut read = |film: &mut Film, compute: &Compute, band: Range<usize>| {
             film.read(compute, &mut radiances[band])
@@ -193,7 +195,7 @@ impl DeviceRenderer {
     /// bloom where there is a single band. Returns whether there was.
     pub(super) fn draw_bands(
         &mut self,
-        plan: &Plan,
+        plan: &FramePlan,
         pixels: Range<u32>,
         grain: u32,
         bloom: Option<(ImageSize, Bloom)>,
@@ -201,52 +203,52 @@ impl DeviceRenderer {
         progress: &mut Progress<'_>,
     ) -> Result<bool> {
         let Self {
-            wave,
+            engines,
             spreader,
             film,
             compute,
             ..
         } = self;
         let band_len = film.reserve_band(compute, pixels.len(), grain)?;
-        wave.begin(compute, plan, pixels.len())?;
+        engines.begin(compute, plan, pixels.len())?;
         for begin in pixels.clone().step_by(band_len) {
             let band = begin..pixels.end.min(begin.saturating_add(band_len as u32));
             film.begin_at(begin);
             let mut report = |pixel| progress(share(&pixels, pixel));
-            wave.draw(compute, plan, band.clone(), film, &mut report)?;
+            engines.draw(compute, plan, band.clone(), film, &mut report)?;
             if let (Some((size, bloom)), true) = (bloom, band == pixels) {
                 spreader.spread(compute, film, size, &bloom)?;
             }
             read(film, compute, band.start as usize..band.end as usize)?;
-            wave.settle(compute, plan)?;
+            engines.settle(compute, plan)?;
         }
         self.bloom_cost = spreader.settle(compute)?;
-        wave.settle_uploads(compute)?;
+        engines.settle_uploads(compute)?;
         Ok(band_len >= pixels.len())
     }
 
     /// Lets the device draw pixels where the caller wants them.
     fn draw_in_place(
         &mut self,
-        plan: &Plan,
+        plan: &FramePlan,
         pixels: Range<u32>,
         target: &mut [Pixel],
         progress: &mut Progress<'_>,
     ) -> Result<()> {
         let Self {
-            wave,
+            engines,
             film,
             compute,
             ..
         } = self;
         let mut film = film.lend(compute, target)?;
-        wave.begin(compute, plan, pixels.len())?;
+        engines.begin(compute, plan, pixels.len())?;
         film.begin_at(pixels.start);
         let mut report = |pixel| progress(share(&pixels, pixel));
-        wave.draw(compute, plan, pixels.clone(), &mut film, &mut report)?;
+        engines.draw(compute, plan, pixels.clone(), &mut film, &mut report)?;
         film.show_host(pixels.len())?;
-        wave.settle(compute, plan)?;
-        wave.settle_uploads(compute)
+        engines.settle(compute, plan)?;
+        engines.settle_uploads(compute)
     }
 
     /// Renders into the film's own buffer and maps it: on a CPU, nothing is copied.
@@ -257,7 +259,7 @@ impl DeviceRenderer {
     ) -> Result<MappedFilm<'_>> {
         let plan = self.plan(scene)?;
         let Self {
-            wave,
+            engines,
             spreader,
             bloom_cost,
             film,
@@ -273,17 +275,17 @@ impl DeviceRenderer {
                 scene.image.height
             )));
         }
-        wave.begin(compute, &plan, pixels)?;
+        engines.begin(compute, &plan, pixels)?;
         film.begin_at(0);
         let nothing = &mut |_: u32| ControlFlow::Continue(());
-        wave.draw(compute, &plan, 0..pixels as u32, film, nothing)?;
+        engines.draw(compute, &plan, 0..pixels as u32, film, nothing)?;
         if let Some(bloom) = bloom {
             spreader.spread(compute, film, scene.image, &bloom)?;
         }
         let mapped = film.map(compute, pixels)?;
-        wave.settle(compute, &plan)?;
+        engines.settle(compute, &plan)?;
         *bloom_cost = spreader.settle(compute)?;
-        wave.settle_uploads(compute)?;
+        engines.settle_uploads(compute)?;
         Ok(mapped)
     }
 }

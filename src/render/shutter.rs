@@ -212,7 +212,7 @@ impl Renderer {
         self.cost_before = frames.cost;
         let progress = &mut |share: f32| progress(frames.share(share * *moments as f32));
         self.has_light = true;
-        let is_put_together = !scene.metaballs.is_empty() || self.has_layers(scene)?;
+        let is_put_together = scene.has_stage() || self.has_layers(scene)?;
         let weight = *weight as f32;
         if let (RendererBackend::OpenCl(renderer), false) = (&mut self.backend, is_put_together) {
             renderer.add_light(scene, weight, sum, progress)?;

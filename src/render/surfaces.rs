@@ -23,9 +23,11 @@ impl Renderer {
         wanted: Rows<'_>,
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<()> {
-        match scene.metaballs.is_empty() {
-            true => self.draw_light(scene, wanted, progress),
-            false => self.draw_with_surfaces(scene, wanted, progress),
+        let simulated = self.simulated(scene)?;
+        let scene = simulated.as_ref().unwrap_or(scene);
+        match scene.has_surfaces() {
+            false => self.draw_light(scene, wanted, progress),
+            true => self.draw_with_surfaces(scene, wanted, progress),
         }
     }
 
@@ -55,9 +57,8 @@ impl Renderer {
             stride,
             bloom,
         } = wanted;
-        let (seen, cost) = self.see_surfaces(scene)?;
-        self.cost_before = self.cost_before.then(cost);
-        self.has_light = scene.source_count() > 0;
+        let seen = self.see_all_surfaces(scene)?;
+        self.has_light = scene.source_count() > 0 || scene.has_particles();
         if self.has_light {
             let light = Rows {
                 rows: rows.clone(),

@@ -109,6 +109,11 @@ macro_rules! define_extent {
             fn extent(&self) -> Extent {
                 let mut extent = Extent::EMPTY;
                 $(extent.join(&self.$list.extent(|sources| Extent::of(sources)));)*
+                for particles in self.particles.iter().filter(|it| !it.points.is_empty()) {
+                    let (low, high) = particles.points.bounds();
+                    let (place, reach) = (particles.translate, particles.greatest_radius());
+                    extent.ended.join(low + place - reach, high + place + reach);
+                }
                 extent
             }
         }

@@ -32,9 +32,11 @@ mod integration;
 #[cfg(feature = "files")]
 pub mod keys;
 pub(crate) mod kinds;
+mod light_element;
 mod light_group;
 mod list;
 mod metaballs;
+mod particles;
 mod points;
 #[cfg(feature = "files")]
 mod preset;
@@ -63,9 +65,11 @@ pub use group::{Group, Repeat, Rotation};
 pub use integration::{
     Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
 };
+pub use light_element::LightElement;
 pub use list::List;
 pub(crate) use metaballs::{AMBIENT, LAMP};
 pub use metaballs::{MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs};
+pub use particles::Particles;
 pub use points::{Lattice, PointList, PointSize};
 #[cfg(feature = "files")]
 pub use preset::Preset;
@@ -108,12 +112,16 @@ macro_rules! define_scene {
             pub depth: Option<DepthImage>,
             /// How waves of particles are simulated; `None`: by the defaults.
             pub simulation: Option<SimulationSettings>,
-            /// Waves of particles, which [`crate::particle::Simulation`] moves.
+            /// Waves of particles, which [`crate::particle::Simulation`] moves; their light is drawn.
             pub waves: List<EmittedWave>,
             /// What they hit.
             pub colliders: List<Collider>,
             /// Surfaces, which hide the light behind them too.
             pub metaballs: List<Metaballs>,
+            /// Particles that shine.
+            pub particles: List<Particles>,
+            /// Balls and streaks of light, given one by one; files have none. They do not lengthen the rays.
+            pub light_elements: List<LightElement>,
             $($(#[$doc])* pub $list: List<$Type>,)*
         }
 
@@ -133,6 +141,8 @@ macro_rules! define_scene {
                     waves: List::new(),
                     colliders: List::new(),
                     metaballs: List::new(),
+                    particles: List::new(),
+                    light_elements: List::new(),
                     $($list: List::new(),)*
                 }
             }

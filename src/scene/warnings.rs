@@ -130,8 +130,13 @@ impl Scene {
         first
     }
 
-    /// Says that a surface is made of nothing.
+    /// Says that a surface, or light, is made of nothing.
     fn no_particles(&self) -> Option<SceneError> {
+        let dark = self.particles.iter().position(|it| it.points.is_empty());
+        if let Some(index) = dark {
+            let message = "it has no particle: `points`, `file` or `lattice` says where they are";
+            return Some(SceneError::value(format!("particles[{index}]"), message));
+        }
         let index = self
             .metaballs
             .iter()
@@ -156,13 +161,11 @@ impl Scene {
         {
             return None; // what is told of those is another matter
         }
+        if self.has_particles() || self.colliders.iter().any(|it| it.visible) {
+            return None;
+        }
         let Some(first) = first else {
-            let message = match self.waves.is_empty() {
-                true => "the scene has no source of light: the picture is black",
-                false => {
-                    "waves of particles are simulated, but not drawn yet: the picture is black"
-                }
-            };
+            let message = "the scene has no source of light: the picture is black";
             return Some(SceneError::value("", message));
         };
         let message = match light {

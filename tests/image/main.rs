@@ -28,6 +28,7 @@ mod jittered; // holds stratified samples to their definition, and shows what th
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
 mod layers; // holds several lights of one core to as many sources
 mod metaballs; // holds surfaces to float64 by another method
+mod particles; // holds balls and streaks of light to float64
 mod parts; // draws rows, rays and changed scenes as the whole image has them
 mod path_core; // what a path is by definition
 mod paths; // holds paths to their definition

@@ -197,13 +197,7 @@ fn waves_are_shown_at_the_scenes_time_and_written_as_they_were_read() {
 }
 
 #[test]
-fn a_scene_of_waves_alone_says_that_they_are_not_drawn() {
+fn a_scene_of_waves_alone_is_no_dark_one() {
     let scene = Scene::from_toml(&format!("{CAMERA}{SPLASH}")).unwrap();
-    let warnings = scene.warnings();
-    assert!(
-        warnings[0]
-            .to_string()
-            .contains("simulated, but not drawn yet"),
-        "{warnings:?}"
-    );
+    assert_eq!(scene.warnings(), []);
 }

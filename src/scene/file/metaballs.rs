@@ -6,13 +6,13 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::points::{LatticeTable, NamedPoints};
 use crate::error::SceneError;
 use crate::scene::colors::read_color;
 use crate::scene::metaballs::{MOST_SAMPLES, THRESHOLD_2008};
-use crate::scene::values::{Fault, read_pair, read_vector, read_vectors};
+use crate::scene::values::{Fault, read_vector, read_vectors};
 use crate::scene::{
-    Lattice, MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs,
-    PointList,
+    MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs, PointList,
 };
 
 /// The radius of 2008, world units.
@@ -74,63 +74,6 @@ keys! { pub(in crate::scene) METABALLS_KEYS;
 enum MethodName {
     Exact,
     Sampling,
-}
-
-/// A lattice as a file describes it.
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-struct LatticeTable {
-    #[serde(default = "columns_2008", deserialize_with = "read_pair")]
-    columns: [f64; 2],
-    count: u32,
-    spacing: f64,
-    #[serde(default)]
-    jitter: f64,
-    #[serde(default)]
-    seed: u32,
-}
-
-// What is read of `lattice`.
-keys! { pub(in crate::scene) LATTICE_KEYS;
-    columns: PAIR, NONE, Value("[24, 24]"), "particles along x and along y, whole numbers";
-    count: WHOLE, NONE, Required, "how many there are in all layers";
-    spacing: POSITIVE, WORLD, Required, "from one to the next";
-    jitter: from_to(0.0, 1.0), NONE, Value("0"), "by which share of the spacing each is moved, along every axis";
-    seed: WHOLE, NONE, Value("0"), "which moves";
-}
-
-fn columns_2008() -> [f64; 2] {
-    Lattice::new(0, 1.0).columns.map(f64::from)
-}
-
-impl LatticeTable {
-    fn lattice(&self) -> Result<Lattice, Fault> {
-        let is_count = |it: &f64| it.fract() == 0.0 && (1.0..=f64::from(u32::MAX)).contains(it);
-        if !self.columns.iter().all(is_count) {
-            let [across, along] = self.columns;
-            let message = format!("{across} by {along}; both are whole numbers, 1 or more");
-            return Err(Fault::new("columns", message));
-        }
-        let lattice = Lattice {
-            columns: self.columns.map(|it| it as u32),
-            count: self.count,
-            spacing: self.spacing,
-            jitter: self.jitter,
-            seed: self.seed,
-        };
-        lattice.check()?;
-        Ok(lattice)
-    }
-
-    fn of(lattice: &Lattice) -> Self {
-        Self {
-            columns: lattice.columns.map(f64::from),
-            count: lattice.count,
-            spacing: lattice.spacing,
-            jitter: lattice.jitter,
-            seed: lattice.seed,
-        }
-    }
 }
 
 impl Default for MetaballsTable {
@@ -203,7 +146,7 @@ impl MetaballsTable {
         let sampling = self.sampling();
         sampling.check().map_err(of)?; // also where it is not chosen
         let metaballs = Metaballs {
-            points: self.list(&table, folder)?,
+            points: self.named().open(&table, folder)?,
             radius: self.radius,
             threshold: self.threshold,
             kernel: self.kernel,
@@ -219,6 +162,15 @@ impl MetaballsTable {
         Ok(metaballs)
     }
 
+    fn named(&self) -> NamedPoints<'_> {
+        NamedPoints {
+            points: &self.points,
+            file: self.file.as_deref(),
+            lattice: self.lattice.as_ref(),
+            list: &self.list,
+        }
+    }
+
     fn sampling(&self) -> MetaballSampling {
         let absent = MetaballSampling::default();
         MetaballSampling {
@@ -226,42 +178,5 @@ impl MetaballsTable {
             samples: self.samples.unwrap_or(absent.samples),
             refinements: self.refinements.unwrap_or(absent.refinements),
         }
-    }
-
-    fn list(&self, table: &str, folder: &Path) -> Result<PointList, SceneError> {
-        let named = [
-            ("points", !self.points.is_empty()),
-            ("file", self.file.is_some()),
-            ("lattice", self.lattice.is_some()),
-        ];
-        let mut named = named.into_iter().filter(|(_, is_there)| *is_there);
-        if let (Some((first, _)), Some((second, _))) = (named.next(), named.next()) {
-            let message =
-                format!("`{first}` says already where the particles are; write one of both");
-            return Err(SceneError::value(format!("{table}.{second}"), message));
-        }
-        if let Some(list) = self.list.get() {
-            return Ok(list.clone());
-        }
-        let list = self.read_list(folder).map_err(|fault| SceneError {
-            key: format!("{table}.{}", fault.key),
-            ..fault
-        })?;
-        Ok(self.list.get_or_init(|| list).clone())
-    }
-
-    fn read_list(&self, folder: &Path) -> Result<PointList, SceneError> {
-        let list = match (&self.file, &self.lattice) {
-            (Some(file), _) => PointList::from_file(folder.join(file)),
-            (None, Some(table)) => {
-                let lattice = table.lattice().map_err(|fault| fault.of("lattice"))?;
-                PointList::lattice(&lattice)
-            }
-            (None, None) => PointList::new(self.points.clone()),
-        };
-        list.map_err(|error| match error {
-            crate::Error::Scene(fault) => fault,
-            other => SceneError::value("file", other.to_string()),
-        })
     }
 }

@@ -13,8 +13,10 @@ mod locate;
 mod metaballs;
 mod moving;
 mod numbers;
+mod particles;
 mod pieces;
 mod piped;
+mod points;
 mod scan;
 mod span;
 mod time;
@@ -45,8 +47,11 @@ use groups::{GroupTable, Groups};
 pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
 pub use integration::MethodKeys;
+pub(super) use metaballs::METABALLS_KEYS;
 use metaballs::MetaballsTable;
-pub(super) use metaballs::{LATTICE_KEYS, METABALLS_KEYS};
+pub(super) use particles::PARTICLES_KEYS;
+use particles::ParticlesTable;
+pub(super) use points::LATTICE_KEYS;
 use scan::UNIT_COUNT;
 pub use span::SceneSpan;
 pub(super) use time::TIME_KEYS;
@@ -87,6 +92,8 @@ macro_rules! define_scene_file {
             collider: Vec<ColliderTable>,
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             metaballs: Vec<MetaballsTable>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            particles: Vec<ParticlesTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
             #[serde(default, skip_serializing)]
             group: Vec<GroupTable>,
@@ -102,7 +109,7 @@ macro_rules! define_scene_file {
         }
 
         impl SceneFile {
-            /// Returns the scene without its depth image, and without surfaces.
+            /// Returns the scene without its depth image, and without surfaces and particles.
             fn scene(&mut self) -> Scene {
                 Scene {
                     camera: self.camera.clone(),
@@ -116,6 +123,8 @@ macro_rules! define_scene_file {
                     waves: std::mem::take(&mut self.wave),
                     colliders: self.colliders(),
                     metaballs: List::new(),
+                    particles: List::new(),
+                    light_elements: List::new(),
                     $($list: std::mem::take(&mut self.$kind),)*
                 }
             }
@@ -167,6 +176,7 @@ macro_rules! define_scene_file {
                 depth: Option<DepthTable>,
                 display: DisplayTable,
                 metaballs: Vec<MetaballsTable>,
+                particles: Vec<ParticlesTable>,
             ) -> Self {
                 Self {
                     camera: scene.camera.clone(),
@@ -181,6 +191,7 @@ macro_rules! define_scene_file {
                     wave: scene.waves.clone(),
                     collider: scene.colliders.iter().map(ColliderTable::of).collect(),
                     metaballs,
+                    particles,
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
                 }
@@ -225,6 +236,11 @@ impl SceneFile {
             new.share(old);
         }
         self.metaballs = metaballs;
+        let mut particles = other.particles;
+        for (new, old) in particles.iter_mut().zip(&self.particles) {
+            new.share(old);
+        }
+        self.particles = particles;
     }
 
     /// Returns whether waves are shown as they are at the scene's time.
@@ -258,7 +274,7 @@ impl SceneFile {
 
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
     fn exposure_of_brightest(mut self) -> Option<f64> {
-        if !self.metaballs.is_empty() {
+        if !self.metaballs.is_empty() || !self.particles.is_empty() {
             return None;
         }
         let mut scene = self.scene();
@@ -286,6 +302,9 @@ impl SceneFile {
         groups.check(&scene)?;
         for (index, table) in self.metaballs.iter().enumerate() {
             scene.metaballs.push(table.open(index, folder)?);
+        }
+        for (index, table) in self.particles.iter().enumerate() {
+            scene.particles.push(table.open(index, folder)?);
         }
         self.display.fit_exposure(&mut scene);
         adjust(&mut scene, &self.integration.keys())?;

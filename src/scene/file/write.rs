@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Serialize, Serializer};
 
-use super::{DepthTable, DisplayTable, MetaballsTable, SceneFile};
+use super::{DepthTable, DisplayTable, MetaballsTable, ParticlesTable, SceneFile};
 use crate::error::{Error, Result};
 use crate::output::Output;
 use crate::scene::Scene;
@@ -14,6 +14,8 @@ const NO_FILE: &str =
     "the depth image is in no file that the scene could name; save it as OpenEXR and open it again";
 const NO_POINTS: &str = "particles with radii of their own are in no file that the scene could name; \
     write them as .csv and open that";
+const NO_ELEMENTS: &str =
+    "a scene file has no place for elements of light that are given one by one";
 const NO_BACKGROUND: &str =
     "the background is in no file that the scene could name; save it and open it again";
 
@@ -32,7 +34,13 @@ impl Serialize for Scene {
         let metaballs = self.metaballs.iter().map(MetaballsTable::of);
         let metaballs: Option<Vec<_>> = metaballs.collect();
         let metaballs = metaballs.ok_or_else(|| serde::ser::Error::custom(NO_POINTS))?;
-        SceneFile::of(self, depth, display, metaballs).serialize(writer)
+        let particles = self.particles.iter().map(ParticlesTable::of);
+        let particles: Option<Vec<_>> = particles.collect();
+        let particles = particles.ok_or_else(|| serde::ser::Error::custom(NO_POINTS))?;
+        if !self.light_elements.is_empty() {
+            return Err(serde::ser::Error::custom(NO_ELEMENTS));
+        }
+        SceneFile::of(self, depth, display, metaballs, particles).serialize(writer)
     }
 }
 

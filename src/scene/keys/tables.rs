@@ -6,7 +6,7 @@ use crate::image::ImageSize;
 use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
 use crate::scene::file::{
     BLOOM_KEYS, BOX_KEYS, COLLIDER_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS,
-    LATTICE_KEYS, METABALLS_KEYS, PLANE_KEYS, SPHERE_KEYS, TIME_KEYS,
+    LATTICE_KEYS, METABALLS_KEYS, PARTICLES_KEYS, PLANE_KEYS, SPHERE_KEYS, TIME_KEYS,
 };
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
@@ -212,6 +212,12 @@ pub fn tables() -> Vec<Table> {
         Many,
         "A surface where the summed field of particles reaches a threshold; it hides the light",
         METABALLS_KEYS,
+    ));
+    tables.push(Table::new(
+        "particles",
+        Many,
+        "Particles that shine, each as far as its radius",
+        PARTICLES_KEYS,
     ));
     tables.extend([
         Table::new(

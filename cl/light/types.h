@@ -1,0 +1,43 @@
+// The structs of particles as light that cross from the host to the device; src/light/pack.rs mirrors them.
+//
+// Positions are seen from the eye, along the axes of the picture: x to the right, y down, z along the view. A ray of an
+// eye leaves the axis by its slopes, a ray of parallel ones by an offset: x = x0 + slope z.
+#pragma once
+#include "../check_size.h"
+
+// The grid of rays, and what light becomes along them.
+typedef struct {
+    float first_x, first_y; // slope, or offset, of the first ray
+    float step_x, step_y;   // from a ray to the next one to the right, and below
+    float near;             // from the eye to the projection plane, along the axis of view
+    float ray_length;       // from the plane, along a ray
+    float scale;            // what the integral over length is multiplied with, the decay's alpha included
+    float beta;             // of the decay, a length
+    float per_length;       // 1 / ray_length: of a decay over s; 0 where there is none
+    float absorbed;         // binary logarithm of what is absorbed, per length
+    uint power;             // of the decay; 0: there is none
+    uint width, height;     // pixels
+    uint is_parallel;
+    uint has_depth, is_along_axis; // whether depths end rays, and whether they are lengths along the axis of view
+    uint tile;                     // pixels across and down in a tile
+    uint tile_columns;
+    uint padding0, padding1;
+} LightView;
+CHECK_SIZE(LightView, SIZEOF_LIGHTVIEW);
+
+// A ball, or a stretch of a streak along which the radius changes evenly.
+typedef struct {
+    float x, y, z; // its middle
+    float radius;  // of the ball, or of the stretch at its middle
+    float red, green, blue;
+    uint form;
+    float axis_x, axis_y, axis_z; // of a stretch: from its middle to its end
+    float growth;                 // by which the radius is greater at that end than in the middle
+} Element;
+CHECK_SIZE(Element, SIZEOF_ELEMENT);
+
+// Forms.
+#define IS_SMOOTH 1u     // the kernel: (1 - r^2/h^2)^3, else (1 - r/h)^2
+#define IS_STRETCH 2u    // no ball
+#define HAS_FIRST_CAP 4u // a stretch with half a ball at its begin,
+#define HAS_LAST_CAP 8u  // and at its end

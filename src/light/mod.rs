@@ -1,0 +1,220 @@
+//! Particles as light: the engine that draws balls and streaks, each of whose light ends at a distance, into a film on
+//! an OpenCL device. They are seen from the eye, and listed by tiles of pixels, anew for every frame, on the host.
+
+mod kernels;
+pub mod pack;
+mod self_test;
+mod sources;
+mod tiles;
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::ops::Range;
+
+use opencl3::event::Event;
+
+use crate::cost::FrameCost;
+use crate::error::Result;
+use crate::image::{DepthAlong, DepthImage};
+use crate::opencl::{
+    Argument, Compute, Film, FilmFormat, Handle, Kernel, RawMemory, RendererOptions, Uploaded,
+    UploadedShared, run_time, state,
+};
+use crate::scene::Scene;
+pub(crate) use kernels::build_text;
+use pack::{Element, LightView, Packed, Sight};
+use tiles::Tiles;
+
+/// Work-items in a group, which share nothing; of a CPU few enough that all cores are busy to the end.
+const GROUP: usize = 16;
+
+/// Blocks of rays of a launch: desktop GPUs kill launches of seconds.
+const BLOCKS: u32 = 1 << 16;
+
+/// The kernels and buffers of a device, which are kept from frame to frame.
+#[derive(Debug)]
+pub(crate) struct Lights {
+    options: RendererOptions,
+    kernels: HashMap<FilmFormat, Kernel>,
+    packed: Packed,
+    tiles: Tiles,
+    elements: Uploaded<Element>,
+    ends: Uploaded<u32>,
+    numbers: Uploaded<u32>,
+    depths: UploadedShared<f32>,
+    under_way: Vec<Handle<Event>>,
+    cost: FrameCost,
+}
+
+/// What is to be drawn.
+#[derive(Debug)]
+pub(crate) struct LightPlan {
+    view: LightView,
+    format: FilmFormat,
+    /// Depths of others on the device; `None`: the scene's, if it has any.
+    depths: Option<RawMemory>,
+}
+
+impl Lights {
+    /// Makes one without kernels: they are built when a scene first needs them.
+    pub(crate) fn new(options: &RendererOptions) -> Self {
+        Self {
+            options: options.clone(),
+            kernels: HashMap::new(),
+            packed: Packed::default(),
+            tiles: Tiles::default(),
+            elements: Uploaded::new("the particles of light"),
+            ends: Uploaded::new("the tiles of particles"),
+            numbers: Uploaded::new("the particles of tiles"),
+            depths: UploadedShared::new("the depth image"),
+            under_way: Vec::new(),
+            cost: FrameCost::default(),
+        }
+    }
+
+    /// Returns what was drawn since the last plan cost.
+    pub(crate) fn cost(&self) -> FrameCost {
+        self.cost
+    }
+
+    /// Returns how many kernels were built.
+    pub(crate) fn kernel_count(&self) -> usize {
+        self.kernels.len()
+    }
+
+    /// Plans the particles of a valid scene, behind depths that the device has, if there are any: packs and lists them,
+    /// uploads what changed, and makes sure that the kernel is built. `None`: the scene has none.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
+    /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device);
+    /// [`Error::Unsupported`](crate::Error::Unsupported) for a camera with a shear.
+    pub(crate) fn plan(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        there: Option<(RawMemory, DepthAlong)>,
+        format: FilmFormat,
+    ) -> Result<Option<LightPlan>> {
+        self.cost = FrameCost::default();
+        if !scene.has_particles() {
+            return Ok(None);
+        }
+        if let Entry::Vacant(entry) = self.kernels.entry(format) {
+            let (kernel, program) = kernels::build(compute, format, &self.options)?;
+            let built = (kernel, &program);
+            entry.insert(self_test::self_test(compute, format, &self.options, built)?);
+        }
+        self.prepare(compute, scene, there, format).map(Some)
+    }
+
+    fn prepare(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        there: Option<(RawMemory, DepthAlong)>,
+        format: FilmFormat,
+    ) -> Result<LightPlan> {
+        let plane = scene.view_plane();
+        let sight = Sight::new(scene, &plane)?;
+        self.packed.pack(scene, &sight);
+        let size = [scene.image.width, scene.image.height];
+        self.tiles.list(&self.packed.boxes, size);
+        self.elements.upload(compute, &self.packed.elements)?;
+        self.ends.upload(compute, &self.tiles.ends)?;
+        self.numbers.upload(compute, &self.tiles.numbers)?;
+        let depths = scene.depth.as_ref().map(DepthImage::shared_values);
+        self.depths.upload(compute, depths)?;
+        let own = scene.depth.as_ref().map(DepthImage::along);
+        let along = there.map(|(_, along)| along).or(own);
+        Ok(LightPlan {
+            view: LightView {
+                tile: self.tiles.size,
+                tile_columns: self.tiles.columns,
+                ..sight.view(scene, along)
+            },
+            format,
+            depths: there.map(|(memory, _)| memory),
+        })
+    }
+
+    /// Enqueues what draws whole rows of pixels into a film. Nothing here waits.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Device`](crate::Error::Device).
+    pub(crate) fn draw(
+        &mut self,
+        compute: &Compute,
+        plan: &LightPlan,
+        pixels: Range<u32>,
+        film: &mut Film,
+    ) -> Result<()> {
+        let is_going_on = |event: &Handle<Event>| matches!(state(event), Ok(false));
+        if self.under_way.len() > 64 {
+            self.under_way.retain(is_going_on);
+        }
+        let Some(kernel) = self.kernels.get(&plan.format) else {
+            return Ok(());
+        };
+        let view = &plan.view;
+        let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
+        let (block_columns, block_rows) = block(lanes);
+        let across = view.width.div_ceil(block_columns);
+        let first = pixels.start / view.width / block_rows * across;
+        let rows = pixels.end.div_ceil(view.width);
+        let end = rows.div_ceil(block_rows) * across;
+        let size = (view.width, view.height);
+        let drawn = film.arguments(compute, &pixels, size, true, true)?;
+        let depths: &dyn Argument = match &plan.depths {
+            Some(memory) => memory,
+            None => self.depths.argument(),
+        };
+        for begin in (first..end).step_by(BLOCKS as usize) {
+            let stop = end.min(begin + BLOCKS);
+            let mut arguments: Vec<(&str, &dyn Argument)> = vec![
+                ("view", view),
+                ("elements", &self.elements),
+                ("ends", &self.ends),
+                ("numbers", &self.numbers),
+                ("depths", depths),
+                ("first_block", &begin),
+                ("end_block", &stop),
+            ];
+            arguments.extend(drawn.named());
+            let group = kernel.group(compute, GROUP)?;
+            let event = kernel.launch(compute, &arguments, (stop - begin) as usize, group)?;
+            self.under_way.push(event);
+        }
+        Ok(())
+    }
+
+    /// Waits for what is under way, and adds up what it cost.
+    ///
+    /// # Errors
+    /// [`Error::Device`](crate::Error::Device) if a launch or a copy failed.
+    pub(crate) fn settle(&mut self, compute: &Compute) -> Result<()> {
+        let mut outcome = Ok(());
+        for event in self.under_way.drain(..) {
+            match run_time(compute, &event) {
+                Ok(time) => self.cost.kernel += time,
+                Err(error) => outcome = outcome.and(Err(error)),
+            }
+            self.cost.launches += 1;
+        }
+        outcome?;
+        self.elements.settle(compute)?;
+        self.ends.settle(compute)?;
+        self.numbers.settle(compute)?;
+        self.depths.settle(compute)
+    }
+}
+
+/// Returns the columns and rows of a block of rays, as `cl/light/rays.h` has them.
+fn block(lanes: u32) -> (u32, u32) {
+    match lanes {
+        16 => (4, 4),
+        8 => (4, 2),
+        4 => (2, 2),
+        _ => (1, 1),
+    }
+}

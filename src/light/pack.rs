@@ -1,0 +1,293 @@
+//! The structs of `cl/light/types.h`, in the same order, and what packs particles into them, seen from the eye.
+
+use std::f64::consts::LOG2_E;
+
+use glam::DVec3;
+
+use super::tiles::PixelBox;
+use crate::error::{Error, Result};
+use crate::image::DepthAlong;
+use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
+use crate::scene::{LightElement, MetaballKernel, Scene, ViewPlane};
+
+device_struct! {
+    /// The grid of rays, and what light becomes along them.
+    LightView [80] {
+        first_x: f32 = 0,
+        first_y: f32 = 4,
+        step_x: f32 = 8,
+        step_y: f32 = 12,
+        near: f32 = 16,
+        ray_length: f32 = 20,
+        scale: f32 = 24,
+        beta: f32 = 28,
+        per_length: f32 = 32,
+        absorbed: f32 = 36,
+        power: u32 = 40,
+        width: u32 = 44,
+        height: u32 = 48,
+        is_parallel: u32 = 52,
+        has_depth: u32 = 56,
+        is_along_axis: u32 = 60,
+        tile: u32 = 64,
+        tile_columns: u32 = 68,
+        padding0: u32 = 72,
+        padding1: u32 = 76,
+    }
+}
+
+device_struct! {
+    /// A ball, or a stretch of a streak.
+    Element [48] {
+        x: f32 = 0,
+        y: f32 = 4,
+        z: f32 = 8,
+        radius: f32 = 12,
+        red: f32 = 16,
+        green: f32 = 20,
+        blue: f32 = 24,
+        form: u32 = 28,
+        axis_x: f32 = 32,
+        axis_y: f32 = 36,
+        axis_z: f32 = 40,
+        growth: f32 = 44,
+    }
+}
+
+by_value!(LightView);
+
+/// Every struct of this engine that crosses to the device.
+pub const STRUCTS: &[StructLayout] = &[LightView::LAYOUT, Element::LAYOUT];
+
+const IS_SMOOTH: u32 = 1;
+const IS_STRETCH: u32 = 2;
+const HAS_FIRST_CAP: u32 = 4;
+const HAS_LAST_CAP: u32 = 8;
+
+/// A streak shorter than this share of its radius is a ball.
+const SHORT: f64 = 1e-4;
+
+/// By so much of its radius a streak may miss an even growth and still be one stretch.
+const EVEN: f64 = 1e-7;
+
+/// The eye, the axes of the picture, and the pixels' places on them.
+#[derive(Debug)]
+pub(super) struct Sight {
+    eye: DVec3,
+    right: DVec3,
+    down: DVec3,
+    forward: DVec3,
+    /// Slope, or offset, of the first pixel, and from one to the next.
+    first: [f64; 2],
+    step: [f64; 2],
+    near: f64,
+    ray_length: f64,
+    is_parallel: bool,
+    size: [u32; 2],
+}
+
+impl Sight {
+    /// # Errors
+    /// [`Error::Unsupported`] if the picture's axes are not perpendicular to each other.
+    pub(super) fn new(scene: &Scene, plane: &ViewPlane) -> Result<Self> {
+        let (right, down) = (plane.column_step.normalize(), plane.row_step.normalize());
+        let leans = |a: DVec3, b: DVec3| a.dot(b).abs() > 1e-6;
+        if leans(right, down) || leans(right, plane.forward) || leans(down, plane.forward) {
+            let message = "particles are drawn by cameras whose rows and columns are perpendicular to each other and \
+                to the view; this projection has a shear";
+            return Err(Error::Unsupported(message.to_owned()));
+        }
+        let scale = match plane.is_parallel {
+            true => 1.0,
+            false => 1.0 / plane.near,
+        };
+        Ok(Self {
+            eye: plane.eye,
+            right,
+            down,
+            forward: plane.forward,
+            first: [right, down].map(|axis| scale * plane.first_pixel.dot(axis)),
+            step: [plane.column_step, plane.row_step].map(|step| scale * step.length()),
+            near: plane.near,
+            ray_length: plane.ray_length,
+            is_parallel: plane.is_parallel,
+            size: [scene.image.width, scene.image.height],
+        })
+    }
+
+    /// Packs it, and what a scene says of its light; `along` is what depths are measured along that end rays.
+    pub(super) fn view(&self, scene: &Scene, along: Option<DepthAlong>) -> LightView {
+        let decay = scene.decay.filter(|decay| decay.power > 0);
+        // A decay of power 0 is alpha everywhere.
+        let alpha = scene.decay.map_or(1.0, |decay| decay.alpha);
+        let measure = scene.integration.scale(self.ray_length) / self.ray_length;
+        let kappa = scene.absorption.map_or(0.0, |absorption| absorption.kappa);
+        let is_along_axis = !matches!(along, None | Some(DepthAlong::Ray));
+        LightView {
+            first_x: self.first[0] as f32,
+            first_y: self.first[1] as f32,
+            step_x: self.step[0] as f32,
+            step_y: self.step[1] as f32,
+            near: self.near as f32,
+            ray_length: self.ray_length as f32,
+            scale: (measure * alpha) as f32,
+            beta: decay.map_or(0.0, |decay| decay.beta * self.ray_length) as f32,
+            per_length: decay.map_or(0.0, |_| 1.0 / self.ray_length) as f32,
+            absorbed: (kappa * LOG2_E) as f32,
+            power: decay.map_or(0, |decay| decay.power),
+            width: self.size[0],
+            height: self.size[1],
+            is_parallel: u32::from(self.is_parallel),
+            has_depth: u32::from(along.is_some()),
+            is_along_axis: u32::from(is_along_axis),
+            ..bytemuck::Zeroable::zeroed()
+        }
+    }
+
+    /// Returns a position seen from the eye, along the axes of the picture.
+    fn seen(&self, place: DVec3) -> DVec3 {
+        self.turned(place - self.eye)
+    }
+
+    fn turned(&self, v: DVec3) -> DVec3 {
+        DVec3::new(v.dot(self.right), v.dot(self.down), v.dot(self.forward))
+    }
+
+    /// Returns the pixels whose rays may come into a ball, as a range of columns and one of rows; `None`: none.
+    fn cover(&self, center: DVec3, radius: f64) -> Option<[[f64; 2]; 2]> {
+        if center.z + radius <= self.near {
+            return None;
+        }
+        let across = |axis: usize| {
+            let (place, z) = (center[axis], center.z);
+            let (low, high) = match self.is_parallel {
+                true => (place - radius, place + radius),
+                // The eye is in the ball, or beside it: any ray may be.
+                false if z <= 1.001 * radius => (f64::NEG_INFINITY, f64::INFINITY),
+                false => {
+                    let square = (z - radius) * (z + radius);
+                    let root = radius * (place * place + square).sqrt();
+                    ((place * z - root) / square, (place * z + root) / square)
+                }
+            };
+            [low, high].map(|at| (at - self.first[axis]) / self.step[axis])
+        };
+        Some([across(0), across(1)])
+    }
+}
+
+/// What is packed of a frame: elements, and the pixels of each.
+#[derive(Debug, Default)]
+pub(super) struct Packed {
+    pub elements: Vec<Element>,
+    pub boxes: Vec<PixelBox>,
+}
+
+impl Packed {
+    /// Packs all particles of a scene, in its order; those that no ray meets are left out.
+    pub(super) fn pack(&mut self, scene: &Scene, sight: &Sight) {
+        self.elements.clear();
+        self.boxes.clear();
+        for particles in scene.particles.iter() {
+            let form = match particles.kernel {
+                MetaballKernel::Smooth => IS_SMOOTH,
+                MetaballKernel::Cone => 0,
+            };
+            particles.for_each(|center, radius, light| {
+                self.add_ball(sight, (center, radius), light, form);
+            });
+        }
+        for element in scene.light_elements.iter() {
+            match element {
+                LightElement::Ball {
+                    center,
+                    radius,
+                    light,
+                } => self.add_ball(sight, (*center, *radius), *light, 0),
+                LightElement::Streak { ends, radii, light } => {
+                    self.add_streak(sight, *ends, *radii, *light);
+                }
+            }
+        }
+    }
+
+    fn add_ball(&mut self, sight: &Sight, (center, radius): (DVec3, f64), light: DVec3, form: u32) {
+        let center = sight.seen(center);
+        let Some(cover) = sight.cover(center, radius) else {
+            return;
+        };
+        if let Some(pixels) = PixelBox::new(cover, sight.size) {
+            self.add(pixels, center, radius, light, form);
+        }
+    }
+
+    fn add(&mut self, pixels: PixelBox, center: DVec3, radius: f64, light: DVec3, form: u32) {
+        if light == DVec3::ZERO {
+            return;
+        }
+        self.boxes.push(pixels);
+        self.elements.push(Element {
+            x: center.x as f32,
+            y: center.y as f32,
+            z: center.z as f32,
+            radius: radius as f32,
+            red: light.x as f32,
+            green: light.y as f32,
+            blue: light.z as f32,
+            form,
+            ..bytemuck::Zeroable::zeroed()
+        });
+    }
+
+    fn add_streak(&mut self, sight: &Sight, ends: [DVec3; 2], radii: [f64; 3], light: DVec3) {
+        let [from, to] = ends;
+        let [first, middle, last] = radii;
+        let center = 0.5 * (from + to);
+        if from.distance(to) <= SHORT * first.max(last) {
+            return self.add_ball(sight, (center, middle), light, 0);
+        }
+        if (0.5 * (first + last) - middle).abs() <= EVEN * middle {
+            let caps = HAS_FIRST_CAP | HAS_LAST_CAP;
+            return self.add_stretch(sight, ends, [first, last], light, caps);
+        }
+        self.add_stretch(sight, [from, center], [first, middle], light, HAS_FIRST_CAP);
+        self.add_stretch(sight, [center, to], [middle, last], light, HAS_LAST_CAP);
+    }
+
+    fn add_stretch(
+        &mut self,
+        sight: &Sight,
+        ends: [DVec3; 2],
+        radii: [f64; 2],
+        light: DVec3,
+        caps: u32,
+    ) {
+        let [from, to] = ends.map(|end| sight.seen(end));
+        let covers =
+            [(from, radii[0]), (to, radii[1])].map(|(end, radius)| sight.cover(end, radius));
+        // Before the plane is no light, but what is between the ends may be seen beyond them.
+        let pixels = match covers {
+            [None, None] => return,
+            [Some(one), Some(other)] => PixelBox::around(one, other, sight.size),
+            _ => PixelBox::new([[f64::NEG_INFINITY, f64::INFINITY]; 2], sight.size),
+        };
+        let Some(pixels) = pixels else {
+            return;
+        };
+        let count = self.elements.len();
+        self.add(
+            pixels,
+            0.5 * (from + to),
+            0.5 * (radii[0] + radii[1]),
+            light,
+            IS_STRETCH | caps,
+        );
+        let axis = 0.5 * (to - from);
+        for element in &mut self.elements[count..] {
+            element.axis_x = axis.x as f32;
+            element.axis_y = axis.y as f32;
+            element.axis_z = axis.z as f32;
+            element.growth = (0.5 * (radii[1] - radii[0])) as f32;
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! The files of the kernels that draw particles as light.
+
+use crate::opencl::{SHARED, SourceFile, Sources, embed};
+
+const FILES: &[SourceFile<'static>] = embed!(
+    "light/element.h",
+    "light/light.cl",
+    "light/rays.h",
+    "light/types.h",
+);
+
+/// Returns them, and what all engines share.
+pub(super) fn sources() -> Sources<'static> {
+    Sources {
+        files: SHARED.iter().chain(FILES).copied().collect(),
+        kinds: Vec::new(),
+    }
+}

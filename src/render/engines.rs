@@ -1,0 +1,181 @@
+//! The engines of light of a device, which draw into one film in turn: the wave, then particles.
+
+use std::ops::{ControlFlow, Range};
+
+use crate::cost::FrameCost;
+use crate::error::Result;
+use crate::light::{LightPlan, Lights};
+use crate::opencl::{Compute, Film, FilmFormat, RendererOptions};
+use crate::scene::{Ray, Scene};
+use crate::wave::{DeviceDepths, Plan, Wave};
+
+#[derive(Debug)]
+pub(super) struct Engines {
+    pub wave: Wave,
+    lights: Lights,
+    /// Which of them the last plan was for.
+    has_wave: bool,
+    has_lights: bool,
+}
+
+/// What each of them is to draw.
+#[derive(Debug)]
+pub(super) struct FramePlan {
+    wave: Option<Plan>,
+    lights: Option<LightPlan>,
+}
+
+impl FramePlan {
+    /// Returns the number that the pixels of a band are a multiple of, if it is no picture or all of one.
+    pub(super) fn grain(&self) -> u32 {
+        self.wave.as_ref().map_or(1, Plan::grain)
+    }
+}
+
+impl Engines {
+    pub(super) fn new(compute: &Compute, options: &RendererOptions) -> Result<Self> {
+        Ok(Self {
+            wave: Wave::new(compute, options)?,
+            lights: Lights::new(options),
+            has_wave: true,
+            has_lights: false,
+        })
+    }
+
+    /// Returns how many kernels were built.
+    pub(super) fn kernel_count(&self) -> usize {
+        self.wave.kernel_count() + self.lights.kernel_count()
+    }
+
+    /// Returns what the last frame cost.
+    pub(super) fn cost(&self) -> FrameCost {
+        match (self.has_wave, self.has_lights) {
+            (_, false) => self.wave.cost(),
+            (true, true) => self.wave.cost().then(self.lights.cost()),
+            (false, true) => self.lights.cost(),
+        }
+    }
+
+    /// Plans a frame of a valid scene, behind depths that the device has, if there are any: the scene then has none.
+    pub(super) fn plan(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        there: Option<DeviceDepths>,
+        format: FilmFormat,
+    ) -> Result<FramePlan> {
+        let depths = there.map(|depths| (depths.memory, depths.along));
+        let lights = self.lights.plan(compute, scene, depths, format)?;
+        self.has_lights = lights.is_some();
+        // Where nothing is drawn, somebody draws black.
+        self.has_wave = scene.source_count() > 0 || !self.has_lights;
+        let wave = match self.has_wave {
+            true => Some(self.wave.plan_behind(compute, scene, there, format)?),
+            false => None,
+        };
+        Ok(FramePlan { wave, lights })
+    }
+
+    /// Plans single rays through a valid scene without particles.
+    pub(super) fn plan_rays(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        rays: &[Ray],
+    ) -> Result<FramePlan> {
+        (self.has_wave, self.has_lights) = (true, false);
+        Ok(FramePlan {
+            wave: Some(self.wave.plan_rays(compute, scene, rays)?),
+            lights: None,
+        })
+    }
+
+    /// Begins a frame of so many pixels.
+    pub(super) fn begin(
+        &mut self,
+        compute: &Compute,
+        plan: &FramePlan,
+        pixels: usize,
+    ) -> Result<()> {
+        match &plan.wave {
+            Some(wave) => self.wave.begin(compute, wave, pixels),
+            None => Ok(()),
+        }
+    }
+
+    /// Draws a band of pixels; the last launches may still be under way.
+    pub(super) fn draw(
+        &mut self,
+        compute: &Compute,
+        plan: &FramePlan,
+        band: Range<u32>,
+        film: &mut Film,
+        progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Result<()> {
+        let draw_wave = |wave: &mut Wave, film: &mut Film| match &plan.wave {
+            Some(it) => wave.draw(compute, it, band.clone(), film, progress),
+            None => Ok(()),
+        };
+        self.draw_in_turn(compute, plan, band.clone(), film, false, draw_wave)
+    }
+
+    /// Draws all pixels without waiting for anything; with `is_unfinished` something is added to them afterwards.
+    pub(super) fn draw_unwatched(
+        &mut self,
+        compute: &Compute,
+        plan: &FramePlan,
+        pixels: usize,
+        film: &mut Film,
+        is_unfinished: bool,
+    ) -> Result<()> {
+        let draw_wave = |wave: &mut Wave, film: &mut Film| match &plan.wave {
+            Some(it) => wave.draw_unwatched(compute, it, film),
+            None => Ok(()),
+        };
+        self.draw_in_turn(
+            compute,
+            plan,
+            0..pixels as u32,
+            film,
+            is_unfinished,
+            draw_wave,
+        )
+    }
+
+    fn draw_in_turn(
+        &mut self,
+        compute: &Compute,
+        plan: &FramePlan,
+        band: Range<u32>,
+        film: &mut Film,
+        is_unfinished: bool,
+        draw_wave: impl FnOnce(&mut Wave, &mut Film) -> Result<()>,
+    ) -> Result<()> {
+        film.leave_unfinished(is_unfinished || plan.lights.is_some());
+        let mut drawn = draw_wave(&mut self.wave, film);
+        film.leave_unfinished(is_unfinished);
+        if let (Some(lights), true) = (&plan.lights, drawn.is_ok()) {
+            film.add_to_what_is_there(plan.wave.is_some());
+            drawn = self.lights.draw(compute, lights, band, film);
+            film.add_to_what_is_there(false);
+        }
+        film.leave_unfinished(false);
+        drawn
+    }
+
+    /// Waits for the launches under way.
+    pub(super) fn settle(&mut self, compute: &Compute, plan: &FramePlan) -> Result<()> {
+        if let Some(wave) = &plan.wave {
+            self.wave.settle(compute, wave)?;
+        }
+        match plan.lights {
+            Some(_) => self.lights.settle(compute),
+            None => Ok(()),
+        }
+    }
+
+    /// Waits for copies under way.
+    pub(super) fn settle_uploads(&mut self, compute: &Compute) -> Result<()> {
+        self.wave.settle_uploads(compute)
+    }
+}
