@@ -154,16 +154,19 @@ INLINE Passing passing(const Block *const block, const float x, const float y, c
     return it;
 }
 
-// Sums the series  t^(2k+1) / ..., k from n on, of which x^0 has the factor `first`, and each next one is the last
-// times x (2j+3)/(2j+5+2n).
-INLINE floatv series(const floatv x, const float from, const float beyond, const float first) {
-    floatv term = splat(first), sum = term;
-    for (uint k = 0u; k < 14u; ++k) {
-        term *= x * ((from + 2.0f * (float)k) / (beyond + 2.0f * (float)k));
-        sum += term;
-    }
-    return sum;
-}
+// Factors of the powers of x in F0/t^5, F2/t^7 and F4/t^9, the highest last.
+__constant float OF_F0[15] = {2.666666667e-01f, 1.142857143e-01f, 6.349206349e-02f, 4.040404040e-02f, 2.797202797e-02f,
+                              2.051282051e-02f, 1.568627451e-02f, 1.238390093e-02f, 1.002506266e-02f, 8.281573499e-03f,
+                              6.956521739e-03f, 5.925925926e-03f, 5.108556833e-03f, 4.449388209e-03f, 3.910068426e-03f};
+__constant float OF_F2[9] = {3.809523810e-02f, 1.269841270e-02f, 5.772005772e-03f, 3.108003108e-03f, 1.864801865e-03f,
+                             1.206636501e-03f, 8.255933953e-04f, 5.897095680e-04f, 4.358722894e-04f};
+__constant float OF_F4[8] = {1.269841270e-02f, 3.463203463e-03f, 1.332001332e-03f, 6.216006216e-04f,
+                             3.290826820e-04f, 1.905215528e-04f, 1.179419136e-04f, 7.691863931e-05f};
+
+// Returns a polynomial of so many factors.
+#define POLYNOMIAL(result, factors, count)                                                                             \
+    floatv result = splat(factors[count - 1]);                                                                         \
+    _Pragma("unroll") for (int power = count - 2; power >= 0; --power) result = fma(result, x, splat(factors[power]))
 
 // The moments of a ball about the place where the ray is closest, in radii.
 typedef struct {
@@ -183,10 +186,13 @@ INLINE Moments moments(const floatv x, const bool is_smooth, const bool fades) {
     const intv is_short = x < 0.5f;
     if (any_lane(is_short)) {
         const floatv t5 = x2 * t;
-        result.zeroth = t5 * series(x, 3.0f, 7.0f, 4.0f / 15.0f);
+        POLYNOMIAL(zeroth, OF_F0, 15);
+        result.zeroth = t5 * zeroth;
         if (fades) {
-            result.second = t5 * x * series(x, 3.0f, 9.0f, 4.0f / 105.0f);
-            result.fourth = t5 * x2 * series(x, 3.0f, 11.0f, 12.0f / 945.0f);
+            POLYNOMIAL(second, OF_F2, 9);
+            POLYNOMIAL(fourth, OF_F4, 8);
+            result.second = t5 * x * second;
+            result.fourth = t5 * x2 * fourth;
         }
     }
     if (any_lane(~is_short)) {

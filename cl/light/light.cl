@@ -49,7 +49,8 @@ __kernel void draw_particles(const FilmPart part, const LightView view, __global
     float3v light = uniform3((float4)(0.0f));
     if (begin < ends[tile]) {
         const Block block = block_at(&view, column, row, depths);
-        light = block_light(&view, &block, elements, numbers, begin, ends[tile], light);
+        if (any_lane(block.begin < block.end))
+            light = block_light(&view, &block, elements, numbers, begin, ends[tile], light);
     }
     float red[LANES], green[LANES], blue[LANES];
     scatter(light.x, red), scatter(light.y, green), scatter(light.z, blue);

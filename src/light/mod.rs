@@ -15,12 +15,12 @@ use opencl3::event::Event;
 
 use crate::cost::FrameCost;
 use crate::error::Result;
-use crate::image::{DepthAlong, DepthImage};
+use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{
     Argument, Compute, Film, FilmFormat, Handle, Kernel, RawMemory, RendererOptions, Uploaded,
     UploadedShared, run_time, state,
 };
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene};
 pub(crate) use kernels::build_text;
 use pack::{Element, LightView, Packed, Sight};
 use tiles::Tiles;
@@ -36,6 +36,8 @@ const BLOCKS: u32 = 1 << 16;
 pub(crate) struct Lights {
     options: RendererOptions,
     kernels: HashMap<FilmFormat, Kernel>,
+    /// Of what elements were packed and listed.
+    known: Option<Known>,
     packed: Packed,
     tiles: Tiles,
     elements: Uploaded<Element>,
@@ -44,6 +46,15 @@ pub(crate) struct Lights {
     depths: UploadedShared<f32>,
     under_way: Vec<Handle<Event>>,
     cost: FrameCost,
+}
+
+/// What decides how particles are seen.
+#[derive(Debug, PartialEq)]
+struct Known {
+    particles: u64,
+    elements: u64,
+    camera: Camera,
+    image: ImageSize,
 }
 
 /// What is to be drawn.
@@ -61,6 +72,7 @@ impl Lights {
         Self {
             options: options.clone(),
             kernels: HashMap::new(),
+            known: None,
             packed: Packed::default(),
             tiles: Tiles::default(),
             elements: Uploaded::new("the particles of light"),
@@ -117,12 +129,25 @@ impl Lights {
     ) -> Result<LightPlan> {
         let plane = scene.view_plane();
         let sight = Sight::new(scene, &plane)?;
-        self.packed.pack(scene, &sight);
-        let size = [scene.image.width, scene.image.height];
-        self.tiles.list(&self.packed.boxes, size);
-        self.elements.upload(compute, &self.packed.elements)?;
-        self.ends.upload(compute, &self.tiles.ends)?;
-        self.numbers.upload(compute, &self.tiles.numbers)?;
+        let known = Some(Known {
+            particles: scene.particles.revision(),
+            elements: scene.light_elements.revision(),
+            camera: scene.camera.clone(),
+            image: scene.image,
+        });
+        let is_known = self.known == known;
+        if !is_known {
+            self.packed.pack(scene, &sight);
+            let size = [scene.image.width, scene.image.height];
+            self.tiles.list(&self.packed.boxes, size);
+            self.known = known;
+        }
+        let (packed, tiles) = (&self.packed, &self.tiles);
+        self.elements
+            .upload_unless(is_known, compute, &packed.elements)?;
+        self.ends.upload_unless(is_known, compute, &tiles.ends)?;
+        self.numbers
+            .upload_unless(is_known, compute, &tiles.numbers)?;
         let depths = scene.depth.as_ref().map(DepthImage::shared_values);
         self.depths.upload(compute, depths)?;
         let own = scene.depth.as_ref().map(DepthImage::along);

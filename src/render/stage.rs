@@ -1,6 +1,7 @@
 //! What is made of a scene before its light is drawn: waves of particles become the light that they give off at the
 //! scene's moment, and visible colliders surfaces, traced in float64 on the host.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -9,7 +10,9 @@ use super::Renderer;
 use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::particle::{Simulation, Solid};
-use crate::scene::{AMBIENT, Camera, Collider, LAMP, List, Scene, SeenSurfaces, ViewPlane};
+use crate::scene::{
+    AMBIENT, Camera, Collider, ColliderShape, LAMP, List, Scene, SeenSurfaces, ViewPlane,
+};
 use crate::threads;
 
 /// Beyond every ray, world units.
@@ -140,13 +143,23 @@ impl Traced {
         let of = TracedScene::of(scene);
         let colliders = visible(scene);
         let (grid, plane) = scene.ray_grid(of.across);
+        let window = window(scene, &plane, grid);
         let mut lengths = vec![0.0_f32; grid.pixels()];
         let width = grid.width as usize;
         threads::for_each_chunk(&mut lengths, width, |row, lengths| {
+            let may_hit = window[1].contains(&row);
             for (column, length) in lengths.iter_mut().enumerate() {
+                let may_hit = may_hit && window[0].contains(&column);
+                if !may_hit && scene.depth.is_none() {
+                    *length = f32::INFINITY;
+                    continue;
+                }
                 let (from, direction, to_plane) = ray(&plane, column, row);
                 let given = given(scene, &plane, grid, (column, row), to_plane);
-                let hit = nearest(&colliders, from, direction).map_or(given, |(hit, ..)| hit);
+                let hit = match may_hit {
+                    true => nearest(&colliders, from, direction).map_or(given, |(hit, ..)| hit),
+                    false => given,
+                };
                 *length = hit.min(given) as f32;
             }
         });
@@ -163,6 +176,54 @@ fn visible(scene: &Scene) -> Vec<Seen> {
         color: collider.color,
     });
     seen.collect()
+}
+
+/// Returns the columns and rows of a grid of rays in which colliders may be seen.
+fn window(scene: &Scene, plane: &ViewPlane, grid: ImageSize) -> [Range<usize>; 2] {
+    let all = [0..grid.width as usize, 0..grid.height as usize];
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for collider in scene.colliders.iter().filter(|collider| collider.visible) {
+        let (center, half) = match collider.shape {
+            // Turned, a box lies within the ball around it.
+            ColliderShape::Box {
+                center,
+                half,
+                rotation,
+            } => match rotation {
+                None => (center, half),
+                Some(_) => (center, DVec3::splat(half.length())),
+            },
+            ColliderShape::Sphere { center, radius } => (center, DVec3::splat(radius)),
+            ColliderShape::Plane { .. } => return all,
+        };
+        for corner in 0..8_u32 {
+            let side = |axis: u32| f64::from(corner >> axis & 1) * 2.0 - 1.0;
+            let way = center + half * DVec3::new(side(0), side(1), side(2)) - plane.eye;
+            let z = way.dot(plane.forward);
+            if z <= 1e-3 * half.length() {
+                return all;
+            }
+            let scale = if plane.is_parallel {
+                1.0
+            } else {
+                plane.near / z
+            };
+            let on_plane = scale * (way - z * plane.forward)
+                - (plane.first_pixel - plane.first_pixel.dot(plane.forward) * plane.forward);
+            for (axis, step) in [plane.column_step, plane.row_step].into_iter().enumerate() {
+                let place = on_plane.dot(step) / step.length_squared();
+                (low[axis], high[axis]) = (low[axis].min(place), high[axis].max(place));
+            }
+        }
+    }
+    let mut axis = 0;
+    all.map(|all| {
+        let last = all.end as f64;
+        let begin = (low[axis] - 1.0).clamp(0.0, last) as usize;
+        let end = (high[axis] + 2.0).clamp(0.0, last) as usize;
+        axis += 1;
+        begin..end
+    })
 }
 
 /// Returns where lengths along a ray begin, its direction, and how far along it the plane is.
@@ -203,7 +264,8 @@ fn nearest(colliders: &[Seen], from: DVec3, direction: DVec3) -> Option<(f64, DV
 /// law that of the lamp that lights metaballs.
 fn shade(scene: &Scene, depth: &DepthImage, colliders: &[Seen]) -> Vec<f32> {
     let across = depth.size().width / scene.image.width;
-    let (_, plane) = scene.ray_grid(across);
+    let (grid, plane) = scene.ray_grid(across);
+    let [columns, rows] = window(scene, &plane, grid);
     let lamp = LAMP.x * plane.column_step.normalize()
         + LAMP.y * plane.row_step.normalize()
         + LAMP.z * plane.forward;
@@ -221,6 +283,9 @@ fn shade(scene: &Scene, depth: &DepthImage, colliders: &[Seen]) -> Vec<f32> {
                     across * column + part % across,
                     across * row + part / across,
                 );
+                if !(columns.contains(&place.0) && rows.contains(&place.1)) {
+                    continue;
+                }
                 let (from, direction, _) = ray(&plane, place.0, place.1);
                 let seen = f64::from(lengths[place.1 * grid_width + place.0]);
                 match nearest(colliders, from, direction) {

@@ -64,7 +64,14 @@ fn bad_particles_are_refused_with_their_place_and_nothing_is_written() {
     for (text, place, words) in BAD {
         let path = folder.path().join("bad.toml");
         std::fs::write(path, format!("{CAMERA}{text}")).unwrap();
-        let render = ["render", "bad.toml", "-o", "out.png", "--device", "reference"];
+        let render = [
+            "render",
+            "bad.toml",
+            "-o",
+            "out.png",
+            "--device",
+            "reference",
+        ];
         let output = folder.run(&render);
         expect(&output, 3, &format!("bad.toml:{place}"));
         expect(&output, 3, words);
