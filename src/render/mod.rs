@@ -339,10 +339,7 @@ impl Renderer {
                 return Err(SceneError::value(format!("ray {index}"), fault).into());
             }
         }
-        if scene.has_particles() {
-            let message = "particles are seen in pictures only; integrate along rays without them";
-            return Err(Error::Unsupported(message.to_owned()));
-        }
+        scene.check_rays_alone()?;
         let pixels = match &mut self.backend {
             RendererBackend::OpenCl(renderer) => renderer.integrate(scene, rays)?,
             RendererBackend::Several(renderer) => renderer.integrate(scene, rays)?,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Renderer;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::particle::{Simulation, Solid};
 use crate::scene::{
@@ -57,6 +57,15 @@ impl Scene {
     /// Returns whether there are surfaces that hide light.
     pub(super) fn has_surfaces(&self) -> bool {
         !self.metaballs.is_empty() || self.colliders.iter().any(|collider| collider.visible)
+    }
+
+    /// Refuses what is seen in pictures only.
+    pub(super) fn check_rays_alone(&self) -> Result<()> {
+        if !self.has_particles() {
+            return Ok(());
+        }
+        let message = "particles are seen in pictures only; integrate along rays without them";
+        Err(Error::Unsupported(message.to_owned()))
     }
 
     /// Returns whether a frame is put together on the host.

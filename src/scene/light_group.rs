@@ -47,6 +47,15 @@ macro_rules! define_light_groups {
                 if group.is_some() {
                     scene.metaballs.iter_mut().for_each(|surface| surface.color = DVec3::ZERO);
                 }
+                scene.colliders = self.colliders.clone();
+                match group {
+                    Some(_) => scene.colliders.iter_mut().for_each(|it| it.color = DVec3::ZERO),
+                    None => {
+                        scene.particles = self.particles.clone();
+                        scene.light_elements = self.light_elements.clone();
+                        (scene.waves, scene.simulation) = (self.waves.clone(), self.simulation);
+                    }
+                }
                 $(scene.$list = kept(&self.$list, group);)*
                 scene
             }
@@ -69,10 +78,11 @@ impl Scene {
         names.into_iter().collect()
     }
 
-    /// Returns whether there is light of no group: of sources, or of surfaces.
+    /// Returns whether there is light of no group: of sources, of particles, or of surfaces.
     #[must_use]
     pub fn has_ungrouped_light(&self) -> bool {
-        let mut has = !self.metaballs.is_empty();
+        let mut has = !self.metaballs.is_empty() || self.has_particles();
+        has |= self.colliders.iter().any(|collider| collider.visible);
         self.for_each_light_group(&mut |group| has |= group.is_none());
         has
     }

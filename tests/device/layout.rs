@@ -4,8 +4,8 @@
 use crate::common;
 use energywave::internals::pack::layout::STRUCTS;
 use energywave::internals::{
-    self, BloomStep, DeviceBuffer, DeviceStruct, KINDS, METABALL_STRUCTS, StoredDepths,
-    StructLayout, host_depth_definitions,
+    self, BloomStep, DeviceBuffer, DeviceStruct, KINDS, LIGHT_STRUCTS, METABALL_STRUCTS,
+    StoredDepths, StructLayout, host_depth_definitions,
 };
 
 const BLOOM_STEP: StructLayout = BloomStep::LAYOUT;
@@ -37,10 +37,15 @@ fn is_of_metaballs(layout: &StructLayout) -> bool {
     METABALL_STRUCTS.iter().any(|it| it.name == layout.name)
 }
 
+fn is_of_light(layout: &StructLayout) -> bool {
+    LIGHT_STRUCTS.iter().any(|it| it.name == layout.name)
+}
+
 fn words_by_name(layout: &StructLayout) -> Vec<u32> {
     let files = match () {
         () if layout.name == BLOOM_STEP.name => "#include \"film.h\"\n#include \"bloom/step.h\"\n",
         () if is_of_metaballs(layout) => "#include \"metaball/types.h\"\n",
+        () if is_of_light(layout) => "#include \"light/types.h\"\n",
         () => FILES,
     };
     words_of(layout, files, "")
@@ -66,6 +71,7 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
         () if is_of_metaballs(layout) => {
             internals::build_metaball_text(&compute, name, &text, &options)
         }
+        () if is_of_light(layout) => internals::build_light_text(&compute, name, &text, &options),
         () => internals::build_text(&compute, name, &text, &KINDS, &options),
     }
     .unwrap();
@@ -88,7 +94,12 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
 
 #[test]
 fn the_device_finds_every_field_where_the_host_put_it() {
-    for layout in STRUCTS.iter().chain([&BLOOM_STEP]).chain(METABALL_STRUCTS) {
+    for layout in STRUCTS
+        .iter()
+        .chain([&BLOOM_STEP])
+        .chain(METABALL_STRUCTS)
+        .chain(LIGHT_STRUCTS)
+    {
         let expected: Vec<u32> = (1..=layout.size as u32 / 4).collect();
         assert_eq!(words_by_name(layout), expected, "{}", layout.name);
     }
