@@ -87,7 +87,14 @@ const LAYERS: [(&str, &[&str]); 13] = [
     ),
     (
         "papers",
-        &["image", "opencl", "scene", "reference", "render"],
+        &[
+            "image",
+            "opencl",
+            "particle",
+            "scene",
+            "reference",
+            "render",
+        ],
     ),
     ("verify", &["scene", "reference", "render"]),
     (

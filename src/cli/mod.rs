@@ -4,6 +4,7 @@ mod animate;
 mod args;
 mod bench;
 mod bench_2008;
+mod bench_2013;
 mod compare;
 mod contacts;
 mod devices;

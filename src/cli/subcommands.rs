@@ -53,7 +53,7 @@ pub struct BenchArguments {
     /// Scene file to measure instead of the paper's tables
     pub scene: Option<PathBuf>,
     /// A paper's table: 2 (torus) or 3 (Bezier) of 2015, both without; 2010 (beam, with and without hidden surfaces);
-    /// 2008 (metaballs)
+    /// 2008 (metaballs); 2013 (particles that hit a box)
     #[arg(long, value_enum, conflicts_with = "scene")]
     pub table: Option<TableName>,
     #[command(flatten)]
@@ -128,6 +128,9 @@ pub enum TableName {
     /// Metaballs, exactly and by samples
     #[value(name = "2008")]
     Metaballs,
+    /// Particles that hit a box, as sprites and as streaks
+    #[value(name = "2013")]
+    Collisions,
 }
 
 #[derive(Debug, Args)]

@@ -25,7 +25,7 @@ macro_rules! figures {
 }
 
 impl Figure {
-    /// All figures: those of 2015, 2010, 2008 and 2006.
+    /// All figures: those of 2015, 2010, 2008, 2006 and 2013.
     pub const ALL: &[Self] = figures!(
         "figure-07",
         "figure-08",
@@ -68,7 +68,20 @@ impl Figure {
         "2006-figure-5-1",
         "2006-figure-5-3-20",
         "2006-figure-5-3-40",
-        "2006-figure-5-3-60"
+        "2006-figure-5-3-60",
+        "2013-figure-4-1",
+        "2013-figure-4-2-left",
+        "2013-figure-4-2-right",
+        "2013-figure-4-3-left",
+        "2013-figure-4-3-right",
+        "2013-figure-4-4-left",
+        "2013-figure-4-4-right",
+        "2013-figure-4-5-left",
+        "2013-figure-4-5-right",
+        "2013-figure-4-6-left",
+        "2013-figure-4-6-right",
+        "2013-figure-4-7",
+        "2013-figure-4-8"
     );
 
     /// Says what it shows: the comment that its scene begins with, in a line.

@@ -6,6 +6,7 @@ mod figures;
 mod occluders;
 mod table_2008;
 mod table_2010;
+mod table_2013;
 mod times;
 
 use std::f64::consts::TAU;
@@ -18,6 +19,7 @@ pub use figures::Figure;
 pub use occluders::tetrahedra;
 pub use table_2008::{Cell2008, PARTICLES_2008, Speed2008, methods_2008, table_2008};
 pub use table_2010::{Cell2010, PAPER_CPU_FPS, TABLE_2010, camera_2010, single_threaded_fps};
+pub use table_2013::{Cell2013, Speed2013, TABLE_2013};
 pub use times::Times;
 
 use crate::cost::FrameCost;
@@ -158,10 +160,18 @@ pub fn measure(renderer: &mut Renderer, scene: &Scene, time: Duration) -> Result
     let scenes: Vec<Scene> = (0..FRAMES_PER_TURN)
         .map(|frame| turned(scene, frame))
         .collect();
-    for scene in &scenes {
+    measure_frames(renderer, &scenes, time)
+}
+
+/// Measures frames one after the other, and again from the first on.
+fn measure_frames(renderer: &mut Renderer, scenes: &[Scene], time: Duration) -> Result<Speed> {
+    for scene in scenes {
         scene.validate()?;
     }
-    let mut image = RadianceImage::new(scene.image)?;
+    let size = scenes
+        .first()
+        .map_or(ImageSize::default(), |scene| scene.image);
+    let mut image = RadianceImage::new(size)?;
     let begun = Instant::now();
     // The first frame compiles; the next ones find their pace.
     for scene in scenes.iter().cycle().take(8) {

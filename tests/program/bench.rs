@@ -6,8 +6,10 @@ use std::time::Duration;
 
 use energywave::image::compare;
 use energywave::papers::{
-    DIVISIONS, RESOLUTIONS, TABLE_2010, Table, measure, methods_2008, table_2008, turned,
+    DIVISIONS, RESOLUTIONS, TABLE_2010, TABLE_2013, Table, measure, methods_2008, table_2008,
+    turned,
 };
+use energywave::scene::ParticleShape;
 use energywave::{Device, RadianceImage, Renderer, reference};
 use serde_json::Value;
 
@@ -244,4 +246,23 @@ fn a_cell_of_2008_says_what_is_hit_and_what_samples_miss() {
         few.0 == exact.0 && few.1 > 0.0 && many.1 <= few.1,
         "{few:?} {many:?}"
     );
+}
+
+#[test]
+fn a_cell_of_2013_has_its_particles_and_another_step_in_every_frame() {
+    let mut renderer = common::renderer(common::device().lanes, "");
+    let cell = TABLE_2013[2];
+    let [sprites, streaks] = [ParticleShape::Sprites, ParticleShape::Streaks].map(|shape| {
+        let found = cell.measure(&mut renderer, shape, Duration::ZERO).unwrap();
+        assert!(found.speed.fps > 0.0 && found.simulation > Duration::ZERO);
+        assert!(found.particles.abs_diff(1221) < 60, "{}", found.particles);
+        found.elements
+    });
+    assert!(sprites > 3 * streaks, "{sprites} {streaks}");
+    let mut frame = |frame| {
+        renderer
+            .render(&cell.scene(ParticleShape::Streaks, frame))
+            .unwrap()
+    };
+    assert!(frame(120).as_slice() != frame(121).as_slice());
 }
