@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::SceneFile;
+use crate::error::SceneError;
 use crate::scene::colors::read_color;
 use crate::scene::simulation::GRAY;
 use crate::scene::values::{Fault, read_some_vector, read_vector};
-use crate::scene::{Collider, ColliderShape, Rotation};
+use crate::scene::{Collider, ColliderShape, List, Rotation};
 
 fn gray() -> DVec3 {
     GRAY
@@ -169,5 +171,22 @@ impl ColliderTable {
             }
         }
         table
+    }
+}
+
+impl SceneFile {
+    /// Returns the colliders that are right.
+    pub(super) fn colliders(&self) -> List<Collider> {
+        let made = self.collider.iter().flat_map(ColliderTable::collider);
+        made.collect()
+    }
+
+    pub(super) fn check_colliders(&self) -> std::result::Result<(), SceneError> {
+        for (index, table) in self.collider.iter().enumerate() {
+            table
+                .collider()
+                .map_err(|fault| fault.of(&format!("collider[{index}]")))?;
+        }
+        Ok(())
     }
 }

@@ -243,35 +243,6 @@ impl SceneFile {
         self.particles = particles;
     }
 
-    /// Returns whether waves are shown as they are at the scene's time.
-    fn plays(&self) -> bool {
-        let time = self.simulation.and_then(|simulation| simulation.time);
-        !self.wave.is_empty() && time.is_none()
-    }
-
-    /// Shows waves as they are so many seconds after the simulation began, unless the file names a frame.
-    fn play(&mut self, seconds: f64) {
-        if self.plays() {
-            let simulation = self.simulation.get_or_insert_default();
-            simulation.time = Some((seconds / simulation.frame).max(0.0));
-        }
-    }
-
-    /// Returns the colliders that are right.
-    fn colliders(&self) -> List<Collider> {
-        let made = self.collider.iter().flat_map(ColliderTable::collider);
-        made.collect()
-    }
-
-    fn check_colliders(&self) -> std::result::Result<(), SceneError> {
-        for (index, table) in self.collider.iter().enumerate() {
-            table
-                .collider()
-                .map_err(|fault| fault.of(&format!("collider[{index}]")))?;
-        }
-        Ok(())
-    }
-
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
     fn exposure_of_brightest(mut self) -> Option<f64> {
         if !self.metaballs.is_empty() || !self.particles.is_empty() {

@@ -1,5 +1,6 @@
 //! `[time]`: after how many seconds a scene begins again, and how long its shutter is open.
 
+use super::SceneFile;
 use serde::Deserialize;
 
 use crate::scene::values::{Checked, Fault, finite, positive};
@@ -41,4 +42,20 @@ impl TimeTable {
 
 pub(super) fn is_period(seconds: f64) -> bool {
     positive("loop", seconds).is_ok()
+}
+
+impl SceneFile {
+    /// Returns whether waves are shown as they are at the scene's time.
+    pub(super) fn plays(&self) -> bool {
+        let time = self.simulation.and_then(|simulation| simulation.time);
+        !self.wave.is_empty() && time.is_none()
+    }
+
+    /// Shows waves as they are so many seconds after the simulation began, unless the file names a frame.
+    pub(super) fn play(&mut self, seconds: f64) {
+        if self.plays() {
+            let simulation = self.simulation.get_or_insert_default();
+            simulation.time = Some((seconds / simulation.frame).max(0.0));
+        }
+    }
 }
