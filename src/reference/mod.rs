@@ -193,8 +193,8 @@ fn simpson_nodes(divisions: u32) -> impl Iterator<Item = (f64, f64)> {
 
 /// Renders the scene's linear radiance in float64, every integral to [`RELATIVE_ERROR`], whatever the scene's method.
 /// Where pixels are means over their squares ([`crate::scene::Antialias`]), those next to cores are means of many rays,
-/// within about 1e-3 where a core is a thirtieth of a pixel thick at least. Waves and colliders are left out: a renderer
-/// on the reference draws them, too. Runs on all cores.
+/// within about 1e-3 where a core is a thirtieth of a pixel thick at least. Waves and colliders are left out; a
+/// [`Renderer`](crate::Renderer) on the reference draws them, too. Runs on all cores.
 ///
 /// # Errors
 /// [`Error::Scene`] if the scene is not valid, [`Error::OutOfMemory`] if the image is too large for memory.
