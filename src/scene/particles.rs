@@ -34,9 +34,6 @@ pub struct Particles {
     pub translate: DVec3,
 }
 
-/// Of particles that name none.
-pub(super) const RADIUS: f64 = 0.5;
-
 impl Particles {
     /// Makes white particles of one radius and coefficient 1.
     #[must_use]

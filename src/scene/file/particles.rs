@@ -9,9 +9,11 @@ use serde::{Deserialize, Serialize};
 use super::points::{LatticeTable, NamedPoints};
 use crate::error::SceneError;
 use crate::scene::colors::read_color;
-use crate::scene::particles::RADIUS;
 use crate::scene::values::{read_vector, read_vectors};
 use crate::scene::{MetaballKernel, Particles, PointList};
+
+/// Of particles that name none, world units.
+const RADIUS: f64 = 0.5;
 
 /// Particles as a file describes them.
 #[derive(Debug, Clone, Deserialize, Serialize)]
