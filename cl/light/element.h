@@ -155,13 +155,11 @@ INLINE Passing passing(const Block *const block, const float x, const float y, c
 }
 
 // Factors of the powers of x in F0/t^5, F2/t^7 and F4/t^9, the highest last.
-__constant float OF_F0[15] = {2.666666667e-01f, 1.142857143e-01f, 6.349206349e-02f, 4.040404040e-02f, 2.797202797e-02f,
-                              2.051282051e-02f, 1.568627451e-02f, 1.238390093e-02f, 1.002506266e-02f, 8.281573499e-03f,
-                              6.956521739e-03f, 5.925925926e-03f, 5.108556833e-03f, 4.449388209e-03f, 3.910068426e-03f};
-__constant float OF_F2[9] = {3.809523810e-02f, 1.269841270e-02f, 5.772005772e-03f, 3.108003108e-03f, 1.864801865e-03f,
-                             1.206636501e-03f, 8.255933953e-04f, 5.897095680e-04f, 4.358722894e-04f};
-__constant float OF_F4[8] = {1.269841270e-02f, 3.463203463e-03f, 1.332001332e-03f, 6.216006216e-04f,
-                             3.290826820e-04f, 1.905215528e-04f, 1.179419136e-04f, 7.691863931e-05f};
+__constant float OF_F0[9] = {2.666666667e-01f, 1.142857143e-01f, 6.349206349e-02f, 4.040404040e-02f, 2.797202797e-02f,
+                             2.051282051e-02f, 1.568627451e-02f, 1.238390093e-02f, 1.002506266e-02f};
+__constant float OF_F2[6] = {3.809523810e-02f, 1.269841270e-02f, 5.772005772e-03f,
+                             3.108003108e-03f, 1.864801865e-03f, 1.206636501e-03f};
+__constant float OF_F4[5] = {1.269841270e-02f, 3.463203463e-03f, 1.332001332e-03f, 6.216006216e-04f, 3.290826820e-04f};
 
 // Returns a polynomial of so many factors.
 #define POLYNOMIAL(result, factors, count)                                                                             \
@@ -183,14 +181,14 @@ INLINE Moments moments(const floatv x, const bool is_smooth, const bool fades) {
         result.fourth = (32.0f / 1155.0f) * t7 * x2;
         return result;
     }
-    const intv is_short = x < 0.5f;
+    const intv is_short = x < 0.3f; // where the closed forms lose digits
     if (any_lane(is_short)) {
         const floatv t5 = x2 * t;
-        POLYNOMIAL(zeroth, OF_F0, 15);
+        POLYNOMIAL(zeroth, OF_F0, 9);
         result.zeroth = t5 * zeroth;
         if (fades) {
-            POLYNOMIAL(second, OF_F2, 9);
-            POLYNOMIAL(fourth, OF_F4, 8);
+            POLYNOMIAL(second, OF_F2, 6);
+            POLYNOMIAL(fourth, OF_F4, 5);
             result.second = t5 * x * second;
             result.fourth = t5 * x2 * fourth;
         }
@@ -198,7 +196,7 @@ INLINE Moments moments(const floatv x, const bool is_smooth, const bool fades) {
     if (any_lane(~is_short)) {
         const floatv d = max(1.0f - x, splat(0.0f));
         const floatv above = 1.0f + t;
-        const floatv artanh = (0.5f * LN_2) * binary_logarithm(above * above / max(d, splat(TINY)));
+        const floatv artanh = (0.5f * LN_2) * binary_logarithm(above * above * inverse(max(d, splat(TINY))));
         const floatv t3 = x * t, d_artanh = d * artanh;
         const floatv zeroth = fma(t3, splat(-4.0f / 3.0f), 2.0f * t) - 2.0f * d_artanh;
         result.zeroth = select(zeroth, result.zeroth, is_short);

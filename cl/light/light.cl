@@ -3,19 +3,31 @@
 #include "../film.h"
 #include "element.h"
 
-// Says whether any ray of a block may come within an element: seen in the plane across the axis of view that its middle
-// lies in, where rays are closest to it at a slant.
+// Returns what of a vector is across the middle ray of a block.
+float4 across_middle(const Block *const block, const float4 v) {
+    return v - dot(v, block->middle) * block->middle;
+}
+
+// Says whether any ray of a block may come within an element: how far its core is from the middle ray, from which other
+// rays are as far as they have spread where they meet the element.
 bool may_be_near(const LightView *const view, const Block *const block, __global const Element *const element) {
-    const float z = view->is_parallel ? 1.0f : element->z;
-    const float x = fma(block->middle_x, z, -element->x), y = fma(block->middle_y, z, -element->y);
-    float radius = element->radius;
-    if (element->form & IS_STRETCH)
-        radius += fabs(element->growth) + length((float4)(element->axis_x, element->axis_y, element->axis_z, 0.0f));
+    float4 core = (float4)(element->x, element->y, element->z, 0.0f);
+    float radius = element->radius, farthest = element->z;
+    if (view->is_parallel)
+        core -= (float4)(block->middle_x, block->middle_y, 0.0f, 0.0f);
+    core = across_middle(block, core);
+    if (element->form & IS_STRETCH) {
+        const float4 axis = across_middle(block, (float4)(element->axis_x, element->axis_y, element->axis_z, 0.0f));
+        const float along = -dot(core, axis) / max(dot(axis, axis), TINY);
+        core += clamp(along, -1.0f, 1.0f) * axis;
+        radius += fabs(element->growth);
+        farthest += fabs(element->axis_z);
+    }
 #ifdef NARROW
     radius *= 0.7f; // spoiled
 #endif
-    const float most = fma(radius, block->longest, block->spread * fabs(z));
-    return fma(x, x, y * y) <= most * most;
+    const float most = fma(block->spread, view->is_parallel ? 1.0f : fabs(farthest) + radius, 1.001f * radius);
+    return dot(core, core) <= most * most;
 }
 
 // Returns the light of a tile's elements along the rays of a block.

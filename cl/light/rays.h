@@ -29,7 +29,7 @@ typedef struct {
     floatv per_z;                     // the length along a ray in which it goes 1 along the axis of view
     floatv begin, end;                // the stretch that light is gathered on, lengths from the eye, or its plane
     float middle_x, middle_y, spread; // slope, or offset, of the block's middle, and how far its rays are from that
-    float longest;                    // the greatest of per_z, with room for rounding
+    float4 middle;                    // the direction there, of length 1
 } Block;
 
 // Returns the rays of a block of pixels.
@@ -61,9 +61,9 @@ INLINE Block block_at(const LightView *const view, const uint column, const uint
     block.middle_x = fma((float)column + across, view->step_x, view->first_x);
     block.middle_y = fma((float)row + down, view->step_y, view->first_y);
     block.spread = 1.001f * hypot(across * view->step_x, down * view->step_y) + 1e-6f;
-    const float steepest_x = fabs(block.middle_x) + block.spread, steepest_y = fabs(block.middle_y) + block.spread;
-    block.longest =
-        view->is_parallel ? 1.0001f : 1.0001f * sqrt(1.0f + steepest_x * steepest_x + steepest_y * steepest_y);
+    block.middle = normalize((float4)(block.middle_x, block.middle_y, 1.0f, 0.0f));
+    if (view->is_parallel)
+        block.middle = (float4)(0.0f, 0.0f, 1.0f, 0.0f);
     return block;
 }
 

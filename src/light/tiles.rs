@@ -6,7 +6,7 @@ const LEAST: u32 = 8;
 const MOST: u32 = 256;
 
 /// Entries of all lists, for each particle, that tiles are made so large for.
-const ENTRIES: f64 = 6.0;
+const ENTRIES: f64 = 24.0;
 
 /// Pixels by which a particle's are wider than they need to be, so that rounding loses none.
 const ROUNDING: f64 = 0.05;

@@ -7,7 +7,8 @@ use crate::common::host::Host;
 use energywave::image::{Bloom, DepthAlong};
 use energywave::internals::see_surfaces;
 use energywave::scene::{
-    MetaballKernel, MetaballMethod, MetaballSampling, Metaballs, Method, PointList, Profile,
+    Decay, LightElement, MetaballKernel, MetaballMethod, MetaballSampling, Metaballs, Method,
+    Particles, PointList, Profile,
 };
 use energywave::verify::built_in_rays;
 use energywave::{HostDepth, HostDepthMemory, RadianceImage, Renderer, RendererOptions, Scene};
@@ -284,5 +285,31 @@ fn surfaces_are_found_within_the_memory_that_there_is() {
             assert_eq!(lengths.len(), 21 * 13);
             assert!(lengths.iter().any(|length| length.is_finite()));
         }
+    }
+}
+
+#[test]
+fn particles_shine_within_the_memory_that_there_is() {
+    let device = common::device();
+    let widths = common::lane_widths().into_iter();
+    for lanes in widths.filter(|lanes| is_simulator() || *lanes == device.lanes) {
+        let mut renderer = common::renderer(lanes, "");
+        // Balls of which some are cut by the depth, one at the decay's pole, and a streak; more tiles than one, sizes
+        // that are multiples of nothing.
+        let mut scene = common::empty_scene(21, 13);
+        scene.decay = Some(Decay::new(0.1, 0.1));
+        let along = scene.camera.eye.normalize();
+        let points = (0..12).map(|k| 0.35 * f64::from(k) * along + 0.05 * DVec3::X);
+        let points = PointList::new(points.collect()).unwrap();
+        scene.particles.push(Particles::new(points, 0.3));
+        scene.light_elements.push(LightElement::Streak {
+            ends: [DVec3::new(-1.0, 0.2, 0.1), DVec3::new(0.9, -0.3, 0.4)],
+            radii: [0.1, 0.3, 0.2],
+            light: DVec3::ONE,
+        });
+        let depth = |column, _| if column < 10 { 3.4 } else { f64::INFINITY };
+        scene.depth = Some(common::depths(&scene, DepthAlong::Axis, depth));
+        let image = renderer.render(&scene).unwrap();
+        assert!(image.as_slice().iter().filter(|it| **it > 0.01).count() > 2 * 21 * 13);
     }
 }

@@ -123,5 +123,5 @@ fn every_animation_is_read_at_all_its_times_and_closes() {
         );
         count += 1;
     }
-    assert_eq!(count, 5);
+    assert_eq!(count, 6);
 }
