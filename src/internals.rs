@@ -181,7 +181,7 @@ pub fn build_bloom_text(
 pub fn see_surfaces(renderer: &mut Renderer, scene: &Scene) -> Result<(Vec<f32>, Vec<f32>)> {
     scene.validate()?;
     let (seen, _) = renderer.see_surfaces(scene)?;
-    Ok((seen.depth.as_slice().to_vec(), seen.light))
+    Ok((seen.depth.as_slice().to_vec(), seen.light.to_vec()))
 }
 
 /// Builds a text that may include files of `cl/metaball/`, as [`build_text`] does with those of the wave.

@@ -43,13 +43,14 @@ INLINE Block block_at(const LightView *const view, const uint column, const uint
     if (view->is_parallel) {
         block.offset_x = x, block.offset_y = y;
         block.slope_x = block.slope_y = splat(0.0f);
-        block.per_z = splat(1.0f);
+        block.per_z = block.toward.z = splat(1.0f);
     } else {
         block.offset_x = block.offset_y = splat(0.0f);
         block.slope_x = x, block.slope_y = y;
-        block.per_z = sqrt(fma(x, x, fma(y, y, splat(1.0f))));
+        const floatv per_z2 = fma(x, x, fma(y, y, splat(1.0f)));
+        block.toward.z = 0.5f * twice_inverse_sqrt_(per_z2);
+        block.per_z = per_z2 * block.toward.z;
     }
-    block.toward.z = 1.0f / block.per_z;
     block.toward.x = block.slope_x * block.toward.z, block.toward.y = block.slope_y * block.toward.z;
     block.begin = view->near * block.per_z;
     block.end = block.begin + view->ray_length;
@@ -60,7 +61,8 @@ INLINE Block block_at(const LightView *const view, const uint column, const uint
     const float across = 0.5f * (float)(BLOCK_COLUMNS - 1u), down = 0.5f * (float)(BLOCK_ROWS - 1u);
     block.middle_x = fma((float)column + across, view->step_x, view->first_x);
     block.middle_y = fma((float)row + down, view->step_y, view->first_y);
-    block.spread = 1.001f * hypot(across * view->step_x, down * view->step_y) + 1e-6f;
+    const float spread_x = across * view->step_x, spread_y = down * view->step_y;
+    block.spread = 1.001f * sqrt(fma(spread_x, spread_x, spread_y * spread_y)) + 1e-6f;
     block.middle = normalize((float4)(block.middle_x, block.middle_y, 1.0f, 0.0f));
     if (view->is_parallel)
         block.middle = (float4)(0.0f, 0.0f, 1.0f, 0.0f);

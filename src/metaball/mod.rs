@@ -329,7 +329,7 @@ impl Surfaces {
         };
         Ok(SeenSurfaces {
             depth: DepthImage::new(size, along, lengths)?,
-            light,
+            light: light.into(),
         })
     }
 }

@@ -400,6 +400,6 @@ pub(crate) fn see_surfaces(scene: &Scene) -> Result<SeenSurfaces> {
     }
     Ok(SeenSurfaces {
         depth: DepthImage::new(grid, along, depths)?,
-        light,
+        light: light.into(),
     })
 }

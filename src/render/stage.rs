@@ -34,7 +34,7 @@ struct Traced {
     of: TracedScene,
     depth: DepthImage,
     /// Without other surfaces.
-    light: Vec<f32>,
+    light: Arc<Vec<f32>>,
 }
 
 /// What lengths depend on.
@@ -113,7 +113,7 @@ impl Renderer {
         let seen = match scene.metaballs.is_empty() {
             true => Ok(SeenSurfaces {
                 depth,
-                light: traced.light.clone(),
+                light: Arc::clone(&traced.light),
             }),
             false => {
                 let behind = Scene {
@@ -121,11 +121,11 @@ impl Renderer {
                     ..scene.clone()
                 };
                 see(self, &behind).map(|mut seen| {
-                    let light = shade(scene, &seen.depth, &visible(scene));
-                    seen.light
-                        .iter_mut()
-                        .zip(light)
-                        .for_each(|(to, from)| *to += from);
+                    let colliders = shade(scene, &seen.depth, &visible(scene));
+                    let light = Arc::make_mut(&mut seen.light).as_chunks_mut::<4>().0;
+                    for (to, from) in light.iter_mut().zip(colliders.as_chunks::<4>().0) {
+                        (0..3).for_each(|channel| to[channel] += from[channel]);
+                    }
                     seen
                 })
             }
@@ -173,7 +173,7 @@ impl Traced {
             }
         });
         let depth = DepthImage::new(grid, DepthAlong::Ray, lengths)?;
-        let light = shade(scene, &depth, &colliders);
+        let light = shade(scene, &depth, &colliders).into();
         Ok(Self { of, depth, light })
     }
 }

@@ -1,6 +1,7 @@
 //! Surfaces as a picture sees them: the grid of their rays, and what is made of a scene that lies behind them.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::{List, Scene, ViewPlane};
 use crate::image::{DepthImage, ImageSize};
@@ -20,7 +21,7 @@ pub(crate) struct SeenSurfaces {
     /// How far each ray sees; as many rays as the grid has, and the scene's depths included.
     pub depth: DepthImage,
     /// The mean radiance of each pixel's rays, RGBA by rows.
-    pub light: Vec<f32>,
+    pub light: Arc<Vec<f32>>,
 }
 
 impl Scene {
