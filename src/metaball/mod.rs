@@ -222,7 +222,11 @@ impl Surfaces {
             counts.write(compute, &[0; 2])?;
         }
         let planes = 4 * plane_of(points);
-        grow(&mut self.planes, compute, "the planes of particles", planes)?;
+        let is_new = grow(&mut self.planes, compute, "the planes of particles", planes)?;
+        if let (Some(it), true) = (&mut self.planes, is_new) {
+            // Lanes read beyond the last particle, whatever is there.
+            it.write(compute, &vec![0.0; planes])?;
+        }
         grow(
             &mut self.squares,
             compute,
@@ -235,7 +239,8 @@ impl Surfaces {
             compute,
             "the light of surfaces",
             image.pixels(),
-        )
+        )?;
+        Ok(())
     }
 
     /// Enqueues all kernels of a frame.
@@ -339,16 +344,17 @@ fn plane_of(points: usize) -> usize {
     points + MOST_LANES
 }
 
-/// Makes sure that a buffer has room for so many elements.
+/// Makes sure that a buffer has room for so many elements. Returns whether it is another one now.
 fn grow<T: bytemuck::Pod>(
     buffer: &mut Option<DeviceBuffer<T>>,
     compute: &Compute,
     what: &str,
     len: usize,
-) -> Result<()> {
-    if buffer.as_ref().is_none_or(|it| it.len() < len) {
+) -> Result<bool> {
+    let is_small = buffer.as_ref().is_none_or(|it| it.len() < len);
+    if is_small {
         *buffer = None;
         *buffer = Some(DeviceBuffer::new(compute, what, len)?);
     }
-    Ok(())
+    Ok(is_small)
 }
