@@ -76,11 +76,11 @@ static float field(const Grid &grid, Vec p) {
     return sum;
 }
 
-// Returns the length up to the surface; infinite: none is there.
+// Returns the length up to the surface; -1: none is there.
 static float follow(const Grid &grid, Vec eye, Vec direction) {
     const float from[3] = {grid.low.x, grid.low.y, grid.low.z}, at[3] = {eye.x, eye.y, eye.z};
     const float along[3] = {direction.x, direction.y, direction.z};
-    float enter = 0.0f, leave = INFINITY;
+    float enter = 0.0f, leave = 1e30f;
     for (int axis = 0; axis < 3; ++axis) {
         const float one = (from[axis] - at[axis]) / along[axis];
         const float other = (from[axis] + grid.size[axis] * H - at[axis]) / along[axis];
@@ -90,7 +90,7 @@ static float follow(const Grid &grid, Vec eye, Vec direction) {
     for (float s = enter; s < leave; s += H / 16.0f)
         if (field(grid, eye + s * direction) >= THRESHOLD)
             return s;
-    return INFINITY;
+    return -1.0f;
 }
 
 int main() {
@@ -123,7 +123,7 @@ int main() {
             times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
         }
         std::sort(times.begin(), times.end());
-        const auto hits = std::count_if(lengths.begin(), lengths.end(), [](float s) { return std::isfinite(s); });
+        const auto hits = std::count_if(lengths.begin(), lengths.end(), [](float s) { return s >= 0.0f; });
         std::printf("%s: %.2f frames a second, the median of 5; %.1f %% of the rays hit\n", is_near ? "near" : "far",
                     1.0 / times[2], 100.0 * hits / lengths.size());
     }
