@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 pub use crate::bloom::{BloomStep, Spreader};
-pub use crate::light::pack::STRUCTS as LIGHT_STRUCTS;
+pub use crate::glow::pack::STRUCTS as GLOW_STRUCTS;
 pub use crate::metaball::pack::STRUCTS as METABALL_STRUCTS;
 pub use crate::opencl::{
     Argument, Compute, DeviceBuffer, DeviceForm, DeviceStruct, Discovery, Film, FilmFormat,
@@ -23,7 +23,7 @@ pub use crate::wave::{Rule, Split, TILE_SHARES, Wave, pack};
 
 use crate::bloom;
 use crate::error::{Error, Result};
-use crate::light;
+use crate::glow;
 use crate::metaball;
 use crate::opencl::{RendererOptions, run_time};
 use crate::render::Renderer;
@@ -197,17 +197,17 @@ pub fn build_metaball_text(
     metaball::build_text(compute, name, text, options)
 }
 
-/// Builds a text that may include files of `cl/light/`, as [`build_text`] does with those of the wave.
+/// Builds a text that may include files of `cl/glow/`, as [`build_text`] does with those of the wave.
 ///
 /// # Errors
 /// As there.
-pub fn build_light_text(
+pub fn build_glow_text(
     compute: &Compute,
     name: &str,
     text: &str,
     options: &RendererOptions,
 ) -> Result<Program> {
-    light::build_text(compute, name, text, options)
+    glow::build_text(compute, name, text, options)
 }
 
 /// Runs a kernel over `items` work-items, in groups of `group`, waits for it, and returns how long the device worked.

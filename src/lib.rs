@@ -49,10 +49,10 @@
 mod bloom;
 mod cost;
 mod error;
+mod glow;
 pub mod image;
 #[doc(hidden)]
 pub mod internals;
-mod light;
 mod memory;
 mod metaball;
 #[cfg(feature = "files")]

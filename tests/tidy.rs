@@ -64,7 +64,7 @@ const LAYERS: [(&str, &[&str]); 13] = [
     ("image", &[]),
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
-    ("light", &["image", "opencl", "scene"]),
+    ("glow", &["image", "opencl", "scene"]),
     ("metaball", &["image", "opencl", "scene"]),
     ("scene", &["image"]),
     ("particle", &["scene"]),
@@ -77,7 +77,7 @@ const LAYERS: [(&str, &[&str]); 13] = [
             "image",
             "opencl",
             "bloom",
-            "light",
+            "glow",
             "metaball",
             "particle",
             "scene",
@@ -102,7 +102,7 @@ const LAYERS: [(&str, &[&str]); 13] = [
         &[
             "opencl",
             "bloom",
-            "light",
+            "glow",
             "metaball",
             "scene",
             "reference",
@@ -221,7 +221,7 @@ fn every_file_of_cl_is_embedded_once() {
     let lists = [
         "src/wave/kinds.rs",
         "src/bloom/sources.rs",
-        "src/light/sources.rs",
+        "src/glow/sources.rs",
         "src/metaball/sources.rs",
         "src/opencl/source.rs",
     ];

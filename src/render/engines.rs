@@ -4,7 +4,7 @@ use std::ops::{ControlFlow, Range};
 
 use crate::cost::FrameCost;
 use crate::error::Result;
-use crate::light::{LightPlan, Lights};
+use crate::glow::{Glow, GlowPlan};
 use crate::opencl::{Compute, Film, FilmFormat, RendererOptions};
 use crate::scene::{Ray, Scene};
 use crate::wave::{DeviceDepths, Plan, Wave};
@@ -12,17 +12,17 @@ use crate::wave::{DeviceDepths, Plan, Wave};
 #[derive(Debug)]
 pub(super) struct Engines {
     pub wave: Wave,
-    lights: Lights,
+    glow: Glow,
     /// Which of them the last plan was for.
     has_wave: bool,
-    has_lights: bool,
+    has_glow: bool,
 }
 
 /// What each of them is to draw.
 #[derive(Debug)]
 pub(super) struct FramePlan {
     wave: Option<Plan>,
-    lights: Option<LightPlan>,
+    glow: Option<GlowPlan>,
 }
 
 impl FramePlan {
@@ -36,23 +36,23 @@ impl Engines {
     pub(super) fn new(compute: &Compute, options: &RendererOptions) -> Result<Self> {
         Ok(Self {
             wave: Wave::new(compute, options)?,
-            lights: Lights::new(options),
+            glow: Glow::new(options),
             has_wave: true,
-            has_lights: false,
+            has_glow: false,
         })
     }
 
     /// Returns how many kernels were built.
     pub(super) fn kernel_count(&self) -> usize {
-        self.wave.kernel_count() + self.lights.kernel_count()
+        self.wave.kernel_count() + self.glow.kernel_count()
     }
 
     /// Returns what the last frame cost.
     pub(super) fn cost(&self) -> FrameCost {
-        match (self.has_wave, self.has_lights) {
+        match (self.has_wave, self.has_glow) {
             (_, false) => self.wave.cost(),
-            (true, true) => self.wave.cost().then(self.lights.cost()),
-            (false, true) => self.lights.cost(),
+            (true, true) => self.wave.cost().then(self.glow.cost()),
+            (false, true) => self.glow.cost(),
         }
     }
 
@@ -65,15 +65,15 @@ impl Engines {
         format: FilmFormat,
     ) -> Result<FramePlan> {
         let depths = there.map(|depths| (depths.memory, depths.along));
-        let lights = self.lights.plan(compute, scene, depths, format)?;
-        self.has_lights = lights.is_some();
+        let glow = self.glow.plan(compute, scene, depths, format)?;
+        self.has_glow = glow.is_some();
         // Where nothing is drawn, somebody draws black.
-        self.has_wave = scene.source_count() > 0 || !self.has_lights;
+        self.has_wave = scene.source_count() > 0 || !self.has_glow;
         let wave = match self.has_wave {
             true => Some(self.wave.plan_behind(compute, scene, there, format)?),
             false => None,
         };
-        Ok(FramePlan { wave, lights })
+        Ok(FramePlan { wave, glow })
     }
 
     /// Plans single rays through a valid scene without particles.
@@ -83,10 +83,10 @@ impl Engines {
         scene: &Scene,
         rays: &[Ray],
     ) -> Result<FramePlan> {
-        (self.has_wave, self.has_lights) = (true, false);
+        (self.has_wave, self.has_glow) = (true, false);
         Ok(FramePlan {
             wave: Some(self.wave.plan_rays(compute, scene, rays)?),
-            lights: None,
+            glow: None,
         })
     }
 
@@ -151,12 +151,12 @@ impl Engines {
         is_unfinished: bool,
         draw_wave: impl FnOnce(&mut Wave, &mut Film) -> Result<()>,
     ) -> Result<()> {
-        film.leave_unfinished(is_unfinished || plan.lights.is_some());
+        film.leave_unfinished(is_unfinished || plan.glow.is_some());
         let mut drawn = draw_wave(&mut self.wave, film);
         film.leave_unfinished(is_unfinished);
-        if let (Some(lights), true) = (&plan.lights, drawn.is_ok()) {
+        if let (Some(glow), true) = (&plan.glow, drawn.is_ok()) {
             film.add_to_what_is_there(plan.wave.is_some());
-            drawn = self.lights.draw(compute, lights, band, film);
+            drawn = self.glow.draw(compute, glow, band, film);
             film.add_to_what_is_there(false);
         }
         film.leave_unfinished(false);
@@ -168,8 +168,8 @@ impl Engines {
         if let Some(wave) = &plan.wave {
             self.wave.settle(compute, wave)?;
         }
-        match plan.lights {
-            Some(_) => self.lights.settle(compute),
+        match plan.glow {
+            Some(_) => self.glow.settle(compute),
             None => Ok(()),
         }
     }

@@ -4,7 +4,7 @@
 use crate::common;
 use energywave::internals::pack::layout::STRUCTS;
 use energywave::internals::{
-    self, BloomStep, DeviceBuffer, DeviceStruct, KINDS, LIGHT_STRUCTS, METABALL_STRUCTS,
+    self, BloomStep, DeviceBuffer, DeviceStruct, GLOW_STRUCTS, KINDS, METABALL_STRUCTS,
     StoredDepths, StructLayout, host_depth_definitions,
 };
 
@@ -37,15 +37,15 @@ fn is_of_metaballs(layout: &StructLayout) -> bool {
     METABALL_STRUCTS.iter().any(|it| it.name == layout.name)
 }
 
-fn is_of_light(layout: &StructLayout) -> bool {
-    LIGHT_STRUCTS.iter().any(|it| it.name == layout.name)
+fn is_of_glow(layout: &StructLayout) -> bool {
+    GLOW_STRUCTS.iter().any(|it| it.name == layout.name)
 }
 
 fn words_by_name(layout: &StructLayout) -> Vec<u32> {
     let files = match () {
         () if layout.name == BLOOM_STEP.name => "#include \"film.h\"\n#include \"bloom/step.h\"\n",
         () if is_of_metaballs(layout) => "#include \"metaball/types.h\"\n",
-        () if is_of_light(layout) => "#include \"light/types.h\"\n",
+        () if is_of_glow(layout) => "#include \"glow/types.h\"\n",
         () => FILES,
     };
     words_of(layout, files, "")
@@ -71,7 +71,7 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
         () if is_of_metaballs(layout) => {
             internals::build_metaball_text(&compute, name, &text, &options)
         }
-        () if is_of_light(layout) => internals::build_light_text(&compute, name, &text, &options),
+        () if is_of_glow(layout) => internals::build_glow_text(&compute, name, &text, &options),
         () => internals::build_text(&compute, name, &text, &KINDS, &options),
     }
     .unwrap();
@@ -98,7 +98,7 @@ fn the_device_finds_every_field_where_the_host_put_it() {
         .iter()
         .chain([&BLOOM_STEP])
         .chain(METABALL_STRUCTS)
-        .chain(LIGHT_STRUCTS)
+        .chain(GLOW_STRUCTS)
     {
         let expected: Vec<u32> = (1..=layout.size as u32 / 4).collect();
         assert_eq!(words_by_name(layout), expected, "{}", layout.name);

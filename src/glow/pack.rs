@@ -1,4 +1,4 @@
-//! The structs of `cl/light/types.h`, in the same order, and what packs particles into them, seen from the eye.
+//! The structs of `cl/glow/types.h`, in the same order, and what packs particles into them, seen from the eye.
 
 use std::f64::consts::LOG2_E;
 
@@ -12,7 +12,7 @@ use crate::scene::{LightElement, MetaballKernel, Scene, ViewPlane};
 
 device_struct! {
     /// The grid of rays, and what light becomes along them.
-    LightView [80] {
+    GlowView [80] {
         first_x: f32 = 0,
         first_y: f32 = 4,
         step_x: f32 = 8,
@@ -54,10 +54,10 @@ device_struct! {
     }
 }
 
-by_value!(LightView);
+by_value!(GlowView);
 
 /// Every struct of this engine that crosses to the device.
-pub const STRUCTS: &[StructLayout] = &[LightView::LAYOUT, Element::LAYOUT];
+pub const STRUCTS: &[StructLayout] = &[GlowView::LAYOUT, Element::LAYOUT];
 
 const IS_SMOOTH: u32 = 1;
 const IS_STRETCH: u32 = 2;
@@ -116,14 +116,14 @@ impl Sight {
     }
 
     /// Packs it, and what a scene says of its light; `along` is what depths are measured along that end rays.
-    pub(super) fn view(&self, scene: &Scene, along: Option<DepthAlong>) -> LightView {
+    pub(super) fn view(&self, scene: &Scene, along: Option<DepthAlong>) -> GlowView {
         let decay = scene.decay.filter(|decay| decay.power > 0);
         // A decay of power 0 is alpha everywhere.
         let alpha = scene.decay.map_or(1.0, |decay| decay.alpha);
         let measure = scene.integration.scale(self.ray_length) / self.ray_length;
         let kappa = scene.absorption.map_or(0.0, |absorption| absorption.kappa);
         let is_along_axis = !matches!(along, None | Some(DepthAlong::Ray));
-        LightView {
+        GlowView {
             first_x: self.first[0] as f32,
             first_y: self.first[1] as f32,
             step_x: self.step[0] as f32,

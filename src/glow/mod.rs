@@ -22,7 +22,7 @@ use crate::opencl::{
 };
 use crate::scene::{Camera, Scene};
 pub(crate) use kernels::build_text;
-use pack::{Element, LightView, Packed, Sight};
+use pack::{Element, GlowView, Packed, Sight};
 use tiles::Tiles;
 
 /// Work-items in a group, which share nothing; of a CPU few enough that all cores are busy to the end.
@@ -33,7 +33,7 @@ const BLOCKS: u32 = 1 << 16;
 
 /// The kernels and buffers of a device, which are kept from frame to frame.
 #[derive(Debug)]
-pub(crate) struct Lights {
+pub(crate) struct Glow {
     options: RendererOptions,
     kernels: HashMap<FilmFormat, Kernel>,
     /// Of what elements were packed and listed.
@@ -59,14 +59,14 @@ struct Known {
 
 /// What is to be drawn.
 #[derive(Debug)]
-pub(crate) struct LightPlan {
-    view: LightView,
+pub(crate) struct GlowPlan {
+    view: GlowView,
     format: FilmFormat,
     /// Depths of others on the device; `None`: the scene's, if it has any.
     depths: Option<RawMemory>,
 }
 
-impl Lights {
+impl Glow {
     /// Makes one without kernels: they are built when a scene first needs them.
     pub(crate) fn new(options: &RendererOptions) -> Self {
         Self {
@@ -107,7 +107,7 @@ impl Lights {
         scene: &Scene,
         there: Option<(RawMemory, DepthAlong)>,
         format: FilmFormat,
-    ) -> Result<Option<LightPlan>> {
+    ) -> Result<Option<GlowPlan>> {
         self.cost = FrameCost::default();
         if !scene.has_particles() {
             return Ok(None);
@@ -126,7 +126,7 @@ impl Lights {
         scene: &Scene,
         there: Option<(RawMemory, DepthAlong)>,
         format: FilmFormat,
-    ) -> Result<LightPlan> {
+    ) -> Result<GlowPlan> {
         let plane = scene.view_plane();
         let sight = Sight::new(scene, &plane)?;
         let known = Some(Known {
@@ -152,8 +152,8 @@ impl Lights {
         self.depths.upload(compute, depths)?;
         let own = scene.depth.as_ref().map(DepthImage::along);
         let along = there.map(|(_, along)| along).or(own);
-        Ok(LightPlan {
-            view: LightView {
+        Ok(GlowPlan {
+            view: GlowView {
                 tile: self.tiles.size,
                 tile_columns: self.tiles.columns,
                 ..sight.view(scene, along)
@@ -170,7 +170,7 @@ impl Lights {
     pub(crate) fn draw(
         &mut self,
         compute: &Compute,
-        plan: &LightPlan,
+        plan: &GlowPlan,
         pixels: Range<u32>,
         film: &mut Film,
     ) -> Result<()> {
@@ -234,7 +234,7 @@ impl Lights {
     }
 }
 
-/// Returns the columns and rows of a block of rays, as `cl/light/rays.h` has them.
+/// Returns the columns and rows of a block of rays, as `cl/glow/rays.h` has them.
 fn block(lanes: u32) -> (u32, u32) {
     match lanes {
         16 => (4, 4),

@@ -33,7 +33,7 @@ typedef struct {
 } Block;
 
 // Returns the rays of a block of pixels.
-INLINE Block block_at(const LightView *const view, const uint column, const uint row,
+INLINE Block block_at(const GlowView *const view, const uint column, const uint row,
                       __global const float *const depths) {
     const uintv columns = min(column + LANE_NUMBERS % BLOCK_COLUMNS, (uintv)(view->width - 1u));
     const uintv rows = min(row + LANE_NUMBERS / BLOCK_COLUMNS, (uintv)(view->height - 1u));
@@ -70,7 +70,7 @@ INLINE Block block_at(const LightView *const view, const uint column, const uint
 }
 
 // Returns what of light reaches the eye from lengths behind the projection plane, times the measure.
-INLINE floatv fading(const LightView *const view, const floatv behind) {
+INLINE floatv fading(const GlowView *const view, const floatv behind) {
     floatv left = splat(view->scale);
     if (view->power > 0u) {
         const floatv w = inverse(fma(behind, splat(view->per_length), splat(view->beta * view->per_length)));

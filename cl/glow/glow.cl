@@ -10,7 +10,7 @@ float4 across_middle(const Block *const block, const float4 v) {
 
 // Says whether any ray of a block may come within an element: how far its core is from the middle ray, from which other
 // rays are as far as they have spread where they meet the element.
-bool may_be_near(const LightView *const view, const Block *const block, __global const Element *const element) {
+bool may_be_near(const GlowView *const view, const Block *const block, __global const Element *const element) {
     float4 core = (float4)(element->x, element->y, element->z, 0.0f);
     float radius = element->radius, farthest = element->z;
     if (view->is_parallel)
@@ -31,7 +31,7 @@ bool may_be_near(const LightView *const view, const Block *const block, __global
 }
 
 // Returns the light of a tile's elements along the rays of a block.
-INLINE float3v block_light(const LightView *const view, const Block *const block,
+INLINE float3v block_light(const GlowView *const view, const Block *const block,
                            __global const Element *const elements, __global const uint *const numbers, const uint begin,
                            const uint end, float3v light) {
     for (uint place = begin; place < end; ++place) {
@@ -47,7 +47,7 @@ INLINE float3v block_light(const LightView *const view, const Block *const block
     return light;
 }
 
-__kernel void draw_particles(const FilmPart part, const LightView view, __global const Element *const restrict elements,
+__kernel void draw_particles(const FilmPart part, const GlowView view, __global const Element *const restrict elements,
                              __global const uint *const restrict ends, __global const uint *const restrict numbers,
                              __global const float *const restrict depths, const uint first_block, const uint end_block,
                              FILM_PARAMETER) {

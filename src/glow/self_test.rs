@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::Lights;
+use super::Glow;
 use crate::error::{Error, Result};
 use crate::image::ImageSize;
 use crate::opencl::{Compute, Film, FilmFormat, Kernel, Program, RendererOptions};
@@ -36,7 +36,7 @@ pub(super) fn self_test(
     if is_experiment || program.was_tested() {
         return Ok(kernel);
     }
-    let mut tester = Lights::new(options);
+    let mut tester = Glow::new(options);
     tester.kernels.insert(format, kernel);
     for decay in [None, Some(Decay::new(0.5, 0.05))] {
         let scene = scene(decay);

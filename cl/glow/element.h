@@ -41,7 +41,7 @@ INLINE floatv root(const floatv x) {
 }
 
 // Sums a panel from `u` on, of this length, which may be negative.
-INLINE floatv panel(const LightView *const view, const Piece *const piece, const floatv u, const floatv length) {
+INLINE floatv panel(const GlowView *const view, const Piece *const piece, const floatv u, const floatv length) {
     floatv sum = splat(0.0f);
     const bool fades = view->power > 0u || view->absorbed > 0.0f;
     for (uint node = 0u; node < NODES; ++node) {
@@ -67,7 +67,7 @@ INLINE floatv panel(const LightView *const view, const Piece *const piece, const
 }
 
 // Sums from `from` to `to` by as many panels as the decay asks for.
-INLINE floatv panels(const LightView *const view, const Piece *const piece, const floatv from, const floatv to) {
+INLINE floatv panels(const GlowView *const view, const Piece *const piece, const floatv from, const floatv to) {
     floatv sum = splat(0.0f), at = from;
     intv goes_on = to != from;
     while (any_lane(goes_on)) {
@@ -90,7 +90,7 @@ INLINE floatv panels(const LightView *const view, const Piece *const piece, cons
 }
 
 // Sums a piece over [low, high], lengths from its place.
-INLINE floatv piece_light(const LightView *const view, Piece *const piece, floatv low, floatv high) {
+INLINE floatv piece_light(const GlowView *const view, Piece *const piece, floatv low, floatv high) {
     // From where the ray is closest on: lengths are small there.
     const floatv steepness = dot3(piece->step, piece->step);
     const floatv closest = clamp(-dot3(piece->from, piece->step) / max(steepness, splat(TINY)), low, max(low, high));
@@ -214,7 +214,7 @@ INLINE Moments moments(const floatv x, const bool is_smooth, const bool fades) {
 }
 
 // Returns the light of a ball of emission 1.
-INLINE floatv ball_light(const LightView *const view, const Block *const block, __global const Element *const element) {
+INLINE floatv ball_light(const GlowView *const view, const Block *const block, __global const Element *const element) {
     const Passing it = passing(block, element->x, element->y, element->z);
     const float h = element->radius;
     const floatv chord2 = fma(splat(h), splat(h), -it.d2);
@@ -255,7 +255,7 @@ INLINE floatv ball_light(const LightView *const view, const Block *const block, 
 }
 
 // Returns the light of a stretch of a streak of emission 1: of its sides, and of the caps that it has.
-INLINE floatv stretch_light(const LightView *const view, const Block *const block,
+INLINE floatv stretch_light(const GlowView *const view, const Block *const block,
                             __global const Element *const element) {
     const Passing it = passing(block, element->x, element->y, element->z);
     const float4 half_axis = (float4)(element->axis_x, element->axis_y, element->axis_z, 0.0f);

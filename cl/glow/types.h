@@ -22,8 +22,8 @@ typedef struct {
     uint tile;                     // pixels across and down in a tile
     uint tile_columns;
     uint padding0, padding1;
-} LightView;
-CHECK_SIZE(LightView, SIZEOF_LIGHTVIEW);
+} GlowView;
+CHECK_SIZE(GlowView, SIZEOF_GLOWVIEW);
 
 // A ball, or a stretch of a streak along which the radius changes evenly.
 typedef struct {

@@ -3,10 +3,10 @@
 use crate::opencl::{SHARED, SourceFile, Sources, embed};
 
 const FILES: &[SourceFile<'static>] = embed!(
-    "light/element.h",
-    "light/light.cl",
-    "light/rays.h",
-    "light/types.h",
+    "glow/element.h",
+    "glow/glow.cl",
+    "glow/rays.h",
+    "glow/types.h",
 );
 
 /// Returns them, and what all engines share.

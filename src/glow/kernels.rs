@@ -16,7 +16,7 @@ pub(super) fn build(
     format: FilmFormat,
     options: &RendererOptions,
 ) -> Result<(Kernel, Program)> {
-    let text = sources().resolve("light/light.cl");
+    let text = sources().resolve("glow/glow.cl");
     let program = Program::build(compute, text, &definitions(format), options)?;
     Ok((program.kernel("draw_particles")?, program))
 }
@@ -27,7 +27,7 @@ fn definitions(format: FilmFormat) -> String {
     sizes.collect::<String>() + format.definitions()
 }
 
-/// Builds a text that includes files of `cl/light/`, for tests; `name` stands for it in the compiler's log.
+/// Builds a text that includes files of `cl/glow/`, for tests; `name` stands for it in the compiler's log.
 pub(crate) fn build_text(
     compute: &Compute,
     name: &str,
