@@ -131,6 +131,23 @@ impl HostLink {
         Ok((Compute::in_context(context, &device)?, link))
     }
 
+    /// Checks what [`HostLink::begin`] does, and enqueues nothing.
+    ///
+    /// # Safety
+    /// As there.
+    pub(crate) unsafe fn check(
+        compute: &Compute,
+        target: HostTarget,
+        size: (u32, u32),
+        wait_list: &[cl_event],
+    ) -> Result<()> {
+        // SAFETY: the caller's promise.
+        unsafe {
+            checked(compute, target, size)?;
+            check_events(compute, wait_list)
+        }
+    }
+
     /// Begins a frame of this size: what follows on our queue waits for `wait_list` and for the commands before it on
     /// the host's queue, and the film goes to the target. Nothing here waits.
     ///
@@ -149,7 +166,8 @@ impl HostLink {
         // SAFETY: the same.
         unsafe { check_events(compute, wait_list) }?;
         self.held.retain(|event| matches!(state(event), Ok(false)));
-        self.begin_after(compute, wait_list)?;
+        // SAFETY: the same.
+        unsafe { self.begin_after(compute, wait_list) }?;
         let in_place = match target {
             HostTarget::Image(_) => {
                 let held = &mut self.held;
@@ -230,7 +248,14 @@ impl HostLink {
     }
 
     /// Makes what follows on our queue wait for what is on the host's, and for the list.
-    fn begin_after(&mut self, compute: &Compute, wait_list: &[cl_event]) -> Result<()> {
+    ///
+    /// # Safety
+    /// The events are alive.
+    pub(crate) unsafe fn begin_after(
+        &mut self,
+        compute: &Compute,
+        wait_list: &[cl_event],
+    ) -> Result<()> {
         let name = &compute.device.name;
         let host = &self.queue;
         // With a list, it would wait for the list alone on an out-of-order queue.

@@ -195,6 +195,15 @@ impl HostDepths {
         Ok(RawMemory(lengths.handle()))
     }
 
+    /// Reads the lengths that were enqueued last, of so many pixels, and waits for them.
+    pub(crate) fn read(&self, compute: &Compute, pixels: usize) -> Result<Vec<f32>> {
+        let mut found = vec![0.0; pixels];
+        if let Some(lengths) = &self.lengths {
+            lengths.read(compute, &mut found)?;
+        }
+        Ok(found)
+    }
+
     /// Returns the lengths of values by the kernel that was prepared, and waits for them: to see whether it is right.
     pub(crate) fn lengths_of(
         &self,

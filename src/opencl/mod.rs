@@ -3,6 +3,7 @@
 #![allow(unsafe_code)] // calls into OpenCL are unsafe by nature; each block says why it is sound
 
 mod absent;
+mod adder;
 mod affinity;
 mod buffer;
 #[cfg(feature = "kernel-cache")]
@@ -33,6 +34,7 @@ mod source;
 mod uploaded;
 mod watch;
 
+pub(crate) use adder::{Added, Adder};
 pub use affinity::keep_pocl_threads_apart;
 pub use buffer::{DeviceBuffer, Pixel};
 #[cfg(feature = "kernel-cache")]

@@ -23,6 +23,7 @@ pub const SHARED: &[SourceFile<'static>] = embed!(
     "view.h",
     "film.h",
     "depth.cl",
+    "add.cl",
 );
 
 /// The files that a program may include, and what its templates are made for.

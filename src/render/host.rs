@@ -15,7 +15,7 @@ use super::one::DeviceRenderer;
 use super::{Renderer, RendererBackend};
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
-use crate::image::Bloom;
+use crate::image::{Bloom, DepthImage};
 use crate::opencl::{Film, HeldDepths, HostLink, HostTarget, RendererOptions, unfit};
 use crate::scene::Scene;
 use crate::wave::DeviceDepths;
@@ -58,6 +58,7 @@ impl Renderer {
     ///
     /// The host's queue is flushed, never finished, and nothing here waits for it (but for the compiler, the first time
     /// that a scene needs other kernels): what goes wrong on the device later shows at the event, and at the next call.
+    /// Surfaces are found before this returns, on a queue that waits for no host.
     /// Dropping the renderer waits until the device has read what was uploaded.
     ///
     /// # Safety
@@ -78,7 +79,8 @@ impl Renderer {
     }
 
     /// Enqueues a frame as [`Renderer::enqueue`] does, whose rays end at depths in the host's own memory. They are read
-    /// on the device, anew for every frame, after `wait_list` and what is on the host's queue before the frame.
+    /// on the device, anew for every frame, after `wait_list` and what is on the host's queue before the frame. Where a
+    /// scene has surfaces, metaballs or visible colliders, this waits for them.
     ///
     /// # Safety
     /// As [`Renderer::enqueue`]; the depths' memory is a valid handle, too, which the caller holds a reference to, and
@@ -108,24 +110,11 @@ impl Renderer {
         wait_list: &[cl_event],
     ) -> Result<Event> {
         self.check(scene)?;
-        if scene
-            .depth
-            .as_ref()
-            .is_some_and(|it| it.size() != scene.image)
-        {
-            let reason =
-                "the scene's are finer than its pixels; a host's memory takes one for each pixel";
-            return Err(unfit("depth", reason));
-        }
         let simulated = self.simulated(scene)?;
         let scene = simulated.as_ref().unwrap_or(scene);
-        if scene.has_surfaces() {
-            let what = match scene.metaballs.is_empty() {
-                true => "collider",
-                false => "metaballs",
-            };
-            let reason = "frames for a host have no surfaces; render them into an image (Renderer::render_into)";
-            return Err(unfit(what, reason));
+        if self.is_joined(scene)? {
+            // SAFETY: the caller's promise.
+            return unsafe { self.enqueue_joined(scene, (target, depth), wait_list) };
         }
         let bloom = self.bloom_of(scene);
         match &mut self.backend {
@@ -136,7 +125,52 @@ impl Renderer {
             RendererBackend::Several(_) | RendererBackend::Reference { .. } => Err(no_host()),
         }
     }
+
+    /// Enqueues a frame that is put together of parts; only depths that a host has on the device are waited for.
+    ///
+    /// # Safety
+    /// As [`Renderer::enqueue_behind`].
+    unsafe fn enqueue_joined(
+        &mut self,
+        scene: &Scene,
+        (target, depth): (HostTarget, Option<&HostDepth>),
+        wait_list: &[cl_event],
+    ) -> Result<Event> {
+        let bloom = self.bloom_of(scene);
+        let renderer = self.host_renderer()?;
+        let size = (scene.image.width, scene.image.height);
+        // SAFETY: the caller's promise.
+        unsafe { HostLink::check(&renderer.compute, target, size, wait_list) }?;
+        let behind = match depth {
+            // SAFETY: the same.
+            Some(depth) => Some(unsafe { renderer.fetch(scene, (target, depth), wait_list) }?),
+            None => None,
+        };
+        let behind = behind.map(|depth| Scene {
+            depth: Some(depth),
+            ..scene.clone()
+        });
+        let scene = behind.as_ref().unwrap_or(scene);
+        let seen = match scene.has_surfaces() {
+            true => Some(self.see_all_surfaces(scene)?),
+            false => None,
+        };
+        let parts = self.parts_of(scene, seen.as_ref())?;
+        let mut cost = FrameCost::default();
+        let mut draw = |renderer: &mut DeviceRenderer, film: &mut Film| {
+            cost = renderer.draw_parts(scene, &parts, film, bloom.as_ref())?;
+            Ok(())
+        };
+        let renderer = self.host_renderer()?;
+        // SAFETY: the caller's promise.
+        let event = unsafe { renderer.draw_for_host(target, size, wait_list, &mut draw) }?;
+        self.cost_before = self.cost_before.then(cost);
+        Ok(event)
+    }
 }
+
+/// Draws into a film with what a renderer has but its own film and its host.
+type DrawFilm<'a> = dyn FnMut(&mut DeviceRenderer, &mut Film) -> Result<()> + 'a;
 
 impl DeviceRenderer {
     /// Enqueues a frame of a valid scene for the host. Nothing here waits.
@@ -150,30 +184,25 @@ impl DeviceRenderer {
         (target, depth): (HostTarget, Option<&HostDepth>),
         wait_list: &[cl_event],
     ) -> Result<Event> {
-        self.bloom_cost = FrameCost::default();
-        let Self {
-            engines,
-            spreader,
-            film,
-            host,
-            host_depths,
-            compute,
-            ..
-        } = self;
-        let host = host.as_mut().ok_or_else(no_host)?;
         let size = (scene.image.width, scene.image.height);
         let depth = match depth {
             Some(depth) => {
                 let values = depth.values(scene)?;
+                let compute = &self.compute;
                 // SAFETY: the caller's promise.
                 let held = unsafe { HeldDepths::take(compute, depth.memory, target, size) }?;
                 Some((held, values, depth.lengths_along()))
             }
             None => None,
         };
-        // SAFETY: the caller's promise.
-        let mut frame = unsafe { host.begin(compute, film, target, size, wait_list) }?;
-        let mut draw = |film: &mut Film| {
+        let mut draw = |renderer: &mut Self, film: &mut Film| {
+            let Self {
+                engines,
+                spreader,
+                host_depths,
+                compute,
+                ..
+            } = renderer;
             let depths = match &depth {
                 Some((held, values, along)) => {
                     host_depth::prepare(compute, host_depths)?;
@@ -194,18 +223,73 @@ impl DeviceRenderer {
             };
             spreader.spread(compute, film, scene.image, &bloom)
         };
-        let mut drawn = draw(film);
-        if matches!(drawn, Err(Error::Build { .. }))
-            && host.copies_instead(compute, film, &mut frame)?
-        {
-            drawn = draw(film);
-        }
-        host.end(compute, film, frame, drawn)
+        // SAFETY: the caller's promise.
+        unsafe { self.draw_for_host(target, size, wait_list, &mut draw) }
+    }
+
+    /// Waits for a host's depths, and reads their lengths.
+    ///
+    /// # Safety
+    /// As [`crate::Renderer::enqueue_behind`].
+    unsafe fn fetch(
+        &mut self,
+        scene: &Scene,
+        (target, depth): (HostTarget, &HostDepth),
+        wait_list: &[cl_event],
+    ) -> Result<DepthImage> {
+        let Self {
+            host,
+            host_depths,
+            compute,
+            ..
+        } = self;
+        let values = depth.values(scene)?;
+        let size = (scene.image.width, scene.image.height);
+        // SAFETY: the caller's promise.
+        let held = unsafe { HeldDepths::take(compute, depth.memory, target, size) }?;
+        host_depth::prepare(compute, host_depths)?;
+        let host = host.as_mut().ok_or_else(no_host)?;
+        // SAFETY: the same.
+        unsafe { host.begin_after(compute, wait_list) }?;
+        host_depths.enqueue(compute, &held, &values)?;
+        let lengths = host_depths.read(compute, scene.image.pixels())?;
+        DepthImage::new(scene.image, depth.lengths_along(), lengths)
+    }
+
+    /// Has a film drawn that is aimed at a host's memory. Nothing here waits.
+    ///
+    /// # Safety
+    /// As [`crate::Renderer::enqueue`].
+    pub(super) unsafe fn draw_for_host(
+        &mut self,
+        target: HostTarget,
+        size: (u32, u32),
+        wait_list: &[cl_event],
+        draw: &mut DrawFilm<'_>,
+    ) -> Result<Event> {
+        self.bloom_cost = FrameCost::default();
+        let mut host = self.host.take().ok_or_else(no_host)?;
+        let mut film = std::mem::take(&mut self.film);
+        // SAFETY: the caller's promise.
+        let begun = unsafe { host.begin(&self.compute, &mut film, target, size, wait_list) };
+        let ended = begun.and_then(|mut frame| {
+            let mut drawn = draw(self, &mut film);
+            if matches!(drawn, Err(Error::Build { .. })) {
+                match host.copies_instead(&self.compute, &mut film, &mut frame) {
+                    Ok(true) => drawn = draw(self, &mut film),
+                    Ok(false) => {}
+                    Err(error) => drawn = Err(error),
+                }
+            }
+            host.end(&self.compute, &mut film, frame, drawn)
+        });
+        (self.film, self.host) = (film, Some(host));
+        ended
     }
 }
 
 /// Makes the error of a frame that was to be enqueued by a renderer without a host.
-fn no_host() -> Error {
+pub(super) fn no_host() -> Error {
     unfit(
         "queue",
         "this renderer was made without one; make it with Renderer::on_host",

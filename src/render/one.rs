@@ -12,7 +12,7 @@ use crate::image::{Bloom, ImageSize};
 use crate::metaball::SurfaceCounts;
 use crate::metaball::Surfaces;
 use crate::opencl::{
-    Compute, Film, HostDepths, HostLink, MappedFilm, OpenClDevice, Pixel, RendererOptions,
+    Adder, Compute, Film, HostDepths, HostLink, MappedFilm, OpenClDevice, Pixel, RendererOptions,
 };
 use crate::scene::{Ray, Scene, SeenSurfaces};
 use crate::wave::Wave;
@@ -24,6 +24,9 @@ pub(crate) struct DeviceRenderer {
     pub(super) engines: Engines,
     pub(super) spreader: Spreader,
     pub(super) surfaces: Surfaces,
+    pub(super) adder: Adder,
+    /// Where parts of a host's frame are drawn.
+    pub(super) part: Film,
     /// Of the bloom of the last frame.
     pub(super) bloom_cost: FrameCost,
     pub(super) film: Film,
@@ -32,6 +35,8 @@ pub(crate) struct DeviceRenderer {
     pub(super) host_depths: HostDepths,
     /// Whether the device itself writes the caller's memory where it can; else what it wrote is copied there.
     pub(crate) writes_in_place: bool,
+    /// Another queue, for what is not to wait for a host.
+    beside: Option<Compute>,
     pub(super) compute: Compute,
 }
 
@@ -70,11 +75,14 @@ impl DeviceRenderer {
             engines: Engines::new(&compute, options)?,
             spreader: Spreader::new(options),
             surfaces: Surfaces::new(options),
+            adder: Adder::new(options),
+            part: Film::new(),
             bloom_cost: FrameCost::default(),
             film: Film::new(),
             host,
             host_depths: HostDepths::new(options),
             writes_in_place: false,
+            beside: None,
             compute,
         })
     }
@@ -111,9 +119,11 @@ impl DeviceRenderer {
 
     /// Finds the surfaces of a valid scene, and returns what that cost, too.
     pub(crate) fn see_surfaces(&mut self, scene: &Scene) -> Result<(SeenSurfaces, FrameCost)> {
-        let seen = self
-            .surfaces
-            .draw(&self.compute, scene, scene.rays_across())?;
+        if self.host.is_some() && self.beside.is_none() {
+            self.beside = Some(self.compute.sibling()?);
+        }
+        let compute = self.beside.as_ref().unwrap_or(&self.compute);
+        let seen = self.surfaces.draw(compute, scene, scene.rays_across())?;
         Ok((seen, self.surfaces.cost()))
     }
 

@@ -146,6 +146,30 @@ impl DepthLayers {
         Ok(())
     }
 
+    /// Returns scenes whose depths are as many as their pixels, and which share of each pixel shows them; `None`: all of
+    /// it.
+    pub(crate) fn parts<'a>(
+        &'a self,
+        scene: &'a Scene,
+    ) -> impl Iterator<Item = (Scene, Option<Vec<f32>>)> + 'a {
+        let part = |(number, layer): (usize, &'a DepthLayer)| {
+            let before = Scene {
+                depth: Some(layer.depth.clone()),
+                ..scene.clone()
+            };
+            if number == 0 && layer.shares.is_empty() {
+                return (before, None);
+            }
+            // Where there is one surface, the first layer has it.
+            let mut shares = vec![if number == 0 { 1.0 } else { 0.0 }; self.size.pixels()];
+            for &(pixel, share) in &layer.shares {
+                shares[pixel as usize] = share;
+            }
+            (before, Some(shares))
+        };
+        self.layers.iter().enumerate().map(part)
+    }
+
     /// Returns how many times something is drawn.
     pub(crate) fn count(&self) -> usize {
         self.layers.len()

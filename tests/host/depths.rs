@@ -265,14 +265,18 @@ fn every_frame_has_the_depths_of_its_time() {
         width: 2 * SIZE.width,
         height: 2 * SIZE.height,
     };
-    let depths = DepthImage::new(fine, DepthAlong::Ray, vec![1.0; fine.pixels()]);
-    own.depth = Some(depths.unwrap());
+    let value = |pixel: usize| [3.8, f32::INFINITY][pixel % 2];
+    let depths = (0..fine.pixels()).map(value).collect();
+    // Finer than pixels, they are the mean of what is seen before each.
+    own.depth = Some(DepthImage::new(fine, DepthAlong::Ray, depths).unwrap());
     // SAFETY: as before.
-    let error = unsafe { frames.renderer.enqueue(&own, target, &[]) }.unwrap_err();
-    assert!(
-        error.to_string().contains("finer than its pixels"),
-        "{error}"
-    );
+    let event = unsafe { frames.renderer.enqueue(&own, target, &[]) }.unwrap();
+    let found = frames.host.read(target, SIZE, &[&event]);
+    let fine = frames.renderer.render(&own).unwrap();
+    assert!(difference(&found, &fine) < 1e-6);
+    own.depth = Some(image_of(&values[1], DepthAlong::Ray));
+    let coarse = frames.renderer.render(&own).unwrap();
+    assert!(difference(&found, &coarse) > 1e-2);
 }
 
 #[test]
