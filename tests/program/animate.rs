@@ -169,6 +169,15 @@ fn whole_frames_of_the_same_scene_are_drawn_once() {
         assert_eq!(counts(&folder, &all), [0, 6, 0]);
         depth(4.5);
         assert_eq!(counts(&folder, &all), [6, 0, 0]);
+        for table in ["particles", "metaballs"] {
+            let named = format!("[[{table}]]\nfile = \"points.csv\"\n");
+            scene(&folder, "a.toml", &named);
+            fs::write(at("points.csv"), "0, 0, 0\n").unwrap();
+            assert_eq!(counts(&folder, &all), [6, 0, 0]);
+            assert_eq!(counts(&folder, &all), [0, 6, 0]);
+            fs::write(at("points.csv"), "0, 0, 0.1\n").unwrap();
+            assert_eq!(counts(&folder, &all), [6, 0, 0], "{table}");
+        }
     }
 }
 

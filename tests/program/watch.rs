@@ -163,6 +163,34 @@ fn files_that_a_scene_names_are_watched_as_soon_as_it_names_them() {
 }
 
 #[test]
+fn files_of_particles_are_watched_as_depths_are() {
+    let dot = |height: f64| format!("# x y z\n0, 0, {height}\n");
+    for table in [
+        "[[particles]]\nradius = 1.5\n",
+        "[[metaballs]]\nradius = 3\nthreshold = 0.25\n",
+    ] {
+        let named = format!("{table}file = \"points/dots.csv\"\n");
+        let mut watch = Watch::of(&text(0.1, ""), &[]);
+        let first = watch.expect_drawn();
+        fs::create_dir(watch.path("points")).unwrap();
+        fs::write(watch.path("points/dots.csv"), dot(0.0)).unwrap();
+        watch.save("a.toml", text(0.1, &named));
+        let low = watch.expect_drawn();
+        assert_ne!(low, first, "{table}");
+        watch.save("points/dots.csv", dot(0.4));
+        let high = watch.expect_drawn();
+        assert_ne!(high, low, "{table}");
+        watch.save("points/dots.csv", "0, 0\n");
+        let fault = watch.hear("error: ");
+        assert!(fault.contains("].file"), "{fault}");
+        assert_eq!(watch.picture(), high, "{table}");
+        watch.save("points/dots.csv", dot(0.0));
+        assert_eq!(watch.expect_drawn(), low, "{table}");
+        watch.end();
+    }
+}
+
+#[test]
 fn a_time_and_overrides_hold_for_every_picture() {
     let moving = "{ times = [0, 2], values = [0.1, 0.5] }";
     let scene = |coefficient: f64| {

@@ -98,6 +98,11 @@ impl Default for MetaballsTable {
 }
 
 impl MetaballsTable {
+    /// Returns the file of its particles, if it names one, from the folder of the scene.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
     /// Makes a surface as it is written; `None` if its particles have sizes and are in no file.
     pub(super) fn of(metaballs: &Metaballs) -> Option<Self> {
         let list = &metaballs.points;

@@ -70,6 +70,11 @@ impl Default for ParticlesTable {
 }
 
 impl ParticlesTable {
+    /// Returns the file of its particles, if it names one, from the folder of the scene.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
     /// Makes particles as they are written; `None` if they have sizes and are in no file.
     pub(super) fn of(particles: &Particles) -> Option<Self> {
         let list = &particles.points;

@@ -40,12 +40,15 @@ impl AnimatedScene {
         &self.document.motion.text
     }
 
-    /// Returns the files that it names: a depth image, and a background.
+    /// Returns the files that it names: a depth image, a background, and those of particles.
     #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
         let Document { file, motion } = &self.document;
         let depth = file.depth.as_ref().map(DepthTable::file);
-        let named = depth.into_iter().chain(file.display.background_file());
+        let surfaces = file.metaballs.iter().filter_map(MetaballsTable::file);
+        let lights = file.particles.iter().filter_map(ParticlesTable::file);
+        let images = depth.into_iter().chain(file.display.background_file());
+        let named = images.chain(surfaces).chain(lights);
         named.map(|file| motion.folder.join(file)).collect()
     }
 }
