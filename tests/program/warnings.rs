@@ -10,8 +10,12 @@ const CAMERA: &str = "[camera]\neye = [0.0, -4.0, 2.0]\ntarget = [0.0, 0.0, 0.0]
 #[test]
 fn no_scene_of_the_repository_is_warned_of() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let entries = std::fs::read_dir(folder).unwrap();
-    let scenes = entries.map(|entry| entry.unwrap().path());
+    let folders = ["", "animations", "presets"].map(|name| folder.join(name));
+    let entries = folders.map(|folder| std::fs::read_dir(folder).unwrap());
+    let scenes = entries
+        .into_iter()
+        .flatten()
+        .map(|entry| entry.unwrap().path());
     let scenes = scenes.filter(|path| path.extension().is_some_and(|ending| ending == "toml"));
     let mut count = 0;
     for path in scenes {
@@ -104,4 +108,70 @@ fn warnings_have_file_line_column_and_key_and_are_told_quietly_too() {
         said("scene.toml", &format!("{CAMERA}fov_y = 40\n[[sphere]]\n")),
         [""; 0]
     );
+}
+
+#[test]
+fn a_cycle_that_does_not_fit_into_the_loop_is_told_with_its_place() {
+    let scene = |loops: &str, track: &str| {
+        let time = format!("[time]\nloop = {loops}\n");
+        said("scene.toml", &format!("{CAMERA}{time}{track}"))
+    };
+    let radius = |keys: &str| {
+        format!(
+            "[[sphere]]\n[[torus]]\nmajor_radius = {{ times = [0, 0.8], values = [1, 2], {keys} }}\n"
+        )
+    };
+    let repeat = radius("loop = \"repeat\"");
+    let ping_pong = radius("loop = \"ping-pong\"");
+    for (loops, track, words) in [
+        (
+            "3",
+            &repeat,
+            "8:16: torus[0].major_radius: begins again every 0.8 s, and jumps where the scene does after 3 s; \
+             a cycle of 0.75 s fits in",
+        ),
+        ("3", &ping_pong, "every 1.6 s"),
+        ("0.5", &repeat, "a cycle of 0.5 s fits in"),
+        (
+            "3",
+            &repeat.replace(
+                "[[sphere]]\n",
+                &format!(
+                    "[[group]]\n[[group.sphere]]\n{}",
+                    radius("loop = \"repeat\"")
+                        .replace("[[torus]]", "[[group.torus]]")
+                        .replace("[[sphere]]\n", "")
+                ),
+            ),
+            "group[0].torus[0].major_radius: begins again every 0.8 s",
+        ),
+    ] {
+        let lines = scene(loops, track);
+        assert_eq!(lines.len(), 1, "{loops}, {track}: {lines:?}");
+        assert!(
+            lines[0].starts_with("warning: scene.toml:") && lines[0].contains(words),
+            "{lines:?}"
+        );
+    }
+    // What is told of the first is told of no other.
+    let lines = scene(
+        "3",
+        &(repeat.clone() + &radius("loop = \"repeat\"").replace("[[sphere]]\n", "")),
+    );
+    assert!(
+        lines.len() == 1 && lines[0].contains("(1 more tracks jump there)"),
+        "{lines:?}"
+    );
+    // Cycles that fit, tracks that end, a value that is the same there, and noise, whose steps are fitted, do not jump.
+    let noise = "loop = \"repeat\", noise = { amplitude = 0.1, frequency = 0.7 }";
+    for (loops, track) in [
+        ("2.4", &repeat),
+        ("1.6", &ping_pong),
+        ("2.4000001", &repeat),
+        ("3", &radius("loop = \"once\"")),
+        ("3", &repeat.replace("[1, 2]", "[1, 1]")),
+        ("2.4", &radius(noise)),
+    ] {
+        assert_eq!(scene(loops, track), [""; 0], "{loops}, {track}");
+    }
 }

@@ -245,10 +245,10 @@ impl AnimatedScene {
         mut adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<()>,
     ) -> Result<(Scene, Vec<SceneError>)> {
         let (scene, groups, moment) = self.checked(time, &mut adjust)?;
-        let motion = &self.document.motion;
+        let Document { file, motion } = &self.document;
         let warnings = groups.warnings(&scene).into_iter();
         let placed = warnings.map(|warning| motion.placed(warning, moment));
-        let warnings = placed.collect();
+        let warnings = placed.chain(motion.seam(file)).collect();
         Ok((scene, warnings))
     }
 

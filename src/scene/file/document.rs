@@ -5,8 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use super::moving::Moving;
-use super::pieces::source_key;
-use super::scan::UNITS;
 use super::tracks::read;
 use super::tree::Moment;
 use super::words::Language;
@@ -66,10 +64,12 @@ impl<'a> Document<'a> {
     /// Makes the scene at a time, and its warnings.
     pub(super) fn into_frame(self, time: f64, adjust: Adjust<'_>) -> Result<Read> {
         let (motion, file) = (self.motion, self.file);
+        let seam = motion.seam(&file);
         let ((scene, warnings), moment) =
             motion.frame(file, time, |file| file.into_scene(&motion.folder, adjust))?;
         let placed = |warning| motion.placed(warning, moment);
-        Ok((scene, warnings.into_iter().map(placed).collect()))
+        let warnings = warnings.into_iter().map(placed);
+        Ok((scene, warnings.chain(seam).collect()))
     }
 }
 
@@ -113,14 +113,7 @@ impl Motion<'_> {
             return Ok(());
         }
         let fault = |(key, message): (String, String)| {
-            let key = match source_key(&key) {
-                Some((unit, index, rest)) => {
-                    let whole = moving.indices[unit].get(index).copied().unwrap_or(index);
-                    format!("{}[{whole}]{rest}", UNITS[unit])
-                }
-                None => key,
-            };
-            self.placed(SceneError::value(key, message), moment)
+            self.placed(SceneError::value(moving.whole_key(&key), message), moment)
         };
         if let Some(singles) = &moving.singles {
             file.replace_singles(read(singles, moment, self.language).map_err(fault)?);
@@ -137,6 +130,11 @@ impl Motion<'_> {
         if !key.is_empty() && self.moving.keys.iter().any(changes) {
             fault.message += &format!(" (at {} s)", moment.time);
         }
+        self.found(fault)
+    }
+
+    /// Says where a fault is.
+    pub(super) fn found(&self, mut fault: SceneError) -> SceneError {
         if self.language == Language::Toml && !self.text.is_empty() {
             fault.position = Some(toml::place_of(&self.text, &fault));
         }

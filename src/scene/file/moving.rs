@@ -1,6 +1,7 @@
 //! What changes of a document that was read.
 
 use super::SceneFile;
+use super::pieces::source_key;
 use super::scan::{UNIT_COUNT, UNITS};
 use super::tracks::{Found, find, read};
 use super::tree::{Entries, Node};
@@ -67,6 +68,17 @@ impl Moving {
         }
         if found.in_single {
             self.singles = Some(Node::Table(singles));
+        }
+    }
+
+    /// Turns a key of [`Moving::units`] into that of the whole document.
+    pub(super) fn whole_key(&self, key: &str) -> String {
+        match source_key(key) {
+            Some((unit, index, rest)) => {
+                let whole = self.indices[unit].get(index).copied().unwrap_or(index);
+                format!("{}[{whole}]{rest}", UNITS[unit])
+            }
+            None => key.to_owned(),
         }
     }
 

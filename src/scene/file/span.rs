@@ -1,5 +1,6 @@
 //! How long a scene moves, what it is made of, and the exposure that fits all of its times.
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use super::animated::AnimatedScene;
@@ -65,14 +66,10 @@ impl Motion<'_> {
             });
         }
         let (mut ends, mut cycles) = (Vec::new(), Vec::new());
-        let mut visit = |track: &Track| {
+        self.for_each_track(&mut |_, track| {
             ends.extend(track.end());
             cycles.push(track.cycle().filter(|_| track.noise.is_none()));
-        };
-        self.moving.units.for_each_track(&mut visit);
-        if let Some(singles) = &self.moving.singles {
-            singles.for_each_track(&mut visit);
-        }
+        });
         if let Some(&Some(seconds)) = cycles.first()
             && cycles.iter().all(|cycle| *cycle == Some(seconds))
         {
@@ -86,6 +83,37 @@ impl Motion<'_> {
             seconds,
             loops: false,
         })
+    }
+
+    /// Calls `visit` with every track and its key.
+    fn for_each_track(&self, visit: &mut impl FnMut(&str, &Track)) {
+        let moving = &self.moving;
+        if let Some(singles) = &moving.singles {
+            singles.for_each_track(&mut String::new(), visit);
+        }
+        let whole = &mut |key: &str, track: &Track| visit(&moving.whole_key(key), track);
+        moving.units.for_each_track(&mut String::new(), whole);
+    }
+
+    /// Says which track is in the middle of its cycle where the scene begins again, so that something jumps.
+    pub(super) fn seam(&self, file: &SceneFile) -> Option<SceneError> {
+        let seconds = file.period()?;
+        let (mut first, mut more) = (None, 0);
+        self.for_each_track(&mut |key, track| match track.unfinished_cycle(seconds) {
+            Some(_) if first.is_some() => more += 1,
+            Some(cycle) => first = Some((key.to_owned(), cycle)),
+            None => {}
+        });
+        let (key, cycle) = first?;
+        let fitting = seconds / (seconds / cycle).round().max(1.0);
+        let mut message = format!(
+            "begins again every {cycle} s, and jumps where the scene does after {seconds} s; a cycle of {fitting} s \
+             fits in"
+        );
+        if more > 0 {
+            let _ = write!(message, " ({more} more tracks jump there)");
+        }
+        Some(self.found(SceneError::value(key, message)))
     }
 
     /// Returns the exposure of a scene that moves and names none: the one that fits its brightest moment, at all times,

@@ -1,7 +1,7 @@
 //! A document whose values may be tracks, and the reading of it at a time: what reads scenes finds numbers where tracks
 //! stand.
 
-use std::fmt;
+use std::fmt::{self, Write};
 
 use serde::de::value::{MapDeserializer, SeqDeserializer, StrDeserializer};
 use serde::de::{Error, IntoDeserializer, MapAccess, SeqAccess, Visitor};
@@ -118,12 +118,26 @@ impl Node {
         }
     }
 
-    /// Shows all tracks in it.
-    pub(super) fn for_each_track(&self, visit: &mut impl FnMut(&Track)) {
+    /// Shows all tracks in it, with their keys; `key` is that of the node, and in the end as it was.
+    pub(super) fn for_each_track(&self, key: &mut String, visit: &mut impl FnMut(&str, &Track)) {
+        let length = key.len();
         match self {
-            Self::Track(track) => visit(track),
-            Self::List(items) => items.iter().for_each(|item| item.for_each_track(visit)),
-            Self::Table(entries) => entries.iter().for_each(|it| it.1.for_each_track(visit)),
+            Self::Track(track) => visit(key, track),
+            Self::List(items) => {
+                for (index, item) in items.iter().enumerate() {
+                    let _ = write!(key, "[{index}]");
+                    item.for_each_track(key, visit);
+                    key.truncate(length);
+                }
+            }
+            Self::Table(entries) => {
+                for (name, value) in entries {
+                    *key += if length == 0 { "" } else { "." };
+                    *key += name;
+                    value.for_each_track(key, visit);
+                    key.truncate(length);
+                }
+            }
             _ => {}
         }
     }

@@ -62,6 +62,10 @@ pub enum TrackLoop {
     PingPong,
 }
 
+/// So far from its end a cycle may be, as a part of it, before its seam is seen.
+#[cfg(feature = "files")]
+const SEAM: f64 = 1e-3;
+
 /// Stands for the values that a track lacks which is none.
 static MISSING: TrackValue = TrackValue::Number(f64::NAN);
 
@@ -181,6 +185,17 @@ impl Track {
             TrackLoop::Repeat => Some(last - first),
             TrackLoop::PingPong => Some(2.0 * (last - first)),
         }
+    }
+
+    /// Returns its cycle, seconds, if that is not over where a scene begins again after so many, and its value jumps
+    /// there. Noise does not: its steps are fitted into the scene's.
+    #[cfg(feature = "files")]
+    pub(super) fn unfinished_cycle(&self, period: f64) -> Option<f64> {
+        let cycle = self.cycle()?;
+        let turns = period / cycle;
+        let is_over = turns.round() >= 1.0 && (turns - turns.round()).abs() <= SEAM;
+        let jumps = || self.without_noise(period) != self.without_noise(0.0);
+        (!is_over && jumps()).then_some(cycle)
     }
 
     /// Returns until when it changes for the first time: its last key, or the end of its first cycle; `None` if all
