@@ -7,9 +7,12 @@ use std::sync::LazyLock;
 use crate::common::apart::apart;
 use crate::common::program::{Folder, device, expect, stderr};
 use energywave::image::DepthAlong;
-use energywave::scene::{Method, Sampling};
+use energywave::scene::{
+    Antialias, Collider, Lattice, LightElement, Metaballs, Method, Particles, PointList, Sampling,
+};
 use energywave::verify::built_in_rays;
 use energywave::{Device, Devices, Error, RadianceImage, Renderer, RendererOptions, Scene};
+use glam::DVec3;
 use serde_json::Value;
 
 /// PoCL shows its CPU as often as it is told to, to a whole process.
@@ -134,6 +137,64 @@ fn equal_devices_draw_the_image_of_one_to_the_bit() {
                         shares.iter().map(|rows| rows.len() as u32).sum::<u32>(),
                         size.height
                     );
+                }
+            }
+        }
+    });
+}
+
+/// A ring among particles, streaks, metaballs and a ball.
+fn crowded(antialias: Antialias) -> Scene {
+    let mut scene = ring(90, 70, Some(Sampling::Pixels));
+    scene.integration.antialias = antialias;
+    let points = |count| {
+        let lattice = Lattice {
+            columns: [3, 2],
+            ..Lattice::new(count, 0.4)
+        };
+        PointList::lattice(&lattice).unwrap()
+    };
+    let mut surface = Metaballs::new(points(6), 0.6);
+    surface.translate = DVec3::new(0.1, -1.6, 0.9);
+    scene.metaballs.push(surface);
+    scene.particles.push(Particles::new(points(40), 0.3));
+    for k in 0..5 {
+        let x = 0.3 * f64::from(k) - 0.6;
+        scene.light_elements.push(LightElement::Streak {
+            ends: [DVec3::new(x, -0.4, -0.5), DVec3::new(-x, 0.3, 0.6)],
+            radii: [0.1, 0.15, 0.05],
+            light: DVec3::new(0.2, 0.6, 1.0),
+        });
+    }
+    let ball = Collider::sphere(DVec3::new(-0.7, 0.1, 0.2), 0.3);
+    scene.colliders.push(ball);
+    scene
+}
+
+#[test]
+fn equal_devices_draw_particles_and_surfaces_as_one_does() {
+    apart(&[POCL_DEVICES], || {
+        let mut one = on(1);
+        for antialias in [Antialias::None, Antialias::Footprint] {
+            let scene = crowded(antialias);
+            let expected = draw(&mut one, &scene, 0);
+            for count in [2, 3] {
+                let mut renderer = on(count);
+                for frame in 0..4 {
+                    let found = draw(&mut renderer, &scene, frame);
+                    assert!(found == expected, "{antialias:?}, {count} devices: {frame}");
+                }
+                let rows = renderer.shares().iter().filter(|rows| !rows.is_empty());
+                assert!(rows.count() > 1, "{:?}", renderer.shares());
+                for remove in [
+                    |scene: &mut Scene| scene.metaballs.clear(),
+                    |scene: &mut Scene| scene.particles.clear(),
+                    |scene: &mut Scene| scene.light_elements.clear(),
+                    |scene: &mut Scene| scene.colliders.clear(),
+                ] {
+                    let mut less = scene.clone();
+                    remove(&mut less);
+                    assert!(draw(&mut renderer, &less, 0) != expected);
                 }
             }
         }

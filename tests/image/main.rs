@@ -28,6 +28,7 @@ mod jittered; // holds stratified samples to their definition, and shows what th
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
 mod layers; // holds several lights of one core to as many sources
 mod metaballs; // holds surfaces to float64 by another method
+mod particle_views; // sees particles through every camera, blurred, and with a bloom
 mod particles; // holds balls and streaks of light to float64
 mod parts; // draws rows, rays and changed scenes as the whole image has them
 mod path_core; // what a path is by definition

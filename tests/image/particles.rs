@@ -13,22 +13,22 @@ use glam::DVec3;
 use crate::common::{self, options};
 
 /// What float32 sums, depths and panels leave: of a pixel, and of the brightest that a single element gives.
-const OF_PIXEL: f64 = 1e-5;
+pub const OF_PIXEL: f64 = 1e-5;
 const OF_BRIGHTEST: f64 = 1e-6;
 
 /// The same of streaks, whose radius changes and whose ends are slanted cuts.
-const OF_STREAK: f64 = 3e-5;
+pub const OF_STREAK: f64 = 3e-5;
 
 /// What float32 leaves of streaks that are 130 radii away, of a pixel and of 1, where the brightest are 10.
 const OF_FAR: f32 = 2e-4;
 
 /// No multiple of a block or a tile.
-const SIZE: ImageSize = ImageSize {
+pub const SIZE: ImageSize = ImageSize {
     width: 61,
     height: 45,
 };
 
-fn renderer(extra: &str) -> Renderer {
+pub fn renderer(extra: &str) -> Renderer {
     common::renderer(common::device().lanes, extra)
 }
 
@@ -41,7 +41,7 @@ fn scene_from(eye: DVec3) -> Scene {
 }
 
 /// A cloud of two kernels, and a lone particle whose rim is seen.
-fn cloud(eye: DVec3) -> Scene {
+pub fn cloud(eye: DVec3) -> Scene {
     let mut scene = scene_from(eye);
     let lattice = Lattice {
         columns: [6, 6],
@@ -62,7 +62,7 @@ fn cloud(eye: DVec3) -> Scene {
 }
 
 /// Streaks in all directions, some along the rays, thick and thin, some with slanted sides.
-fn streaks(eye: DVec3) -> Scene {
+pub fn streaks(eye: DVec3) -> Scene {
     let mut scene = scene_from(eye);
     let mut random = Rng::with_seed(7);
     let mut vector = |reach: f64| DVec3::from([0; 3].map(|_| reach * (2.0 * random.f64() - 1.0)));
@@ -136,7 +136,7 @@ fn peak(image: &RadianceImage) -> f64 {
 }
 
 /// Returns the worst error, as a share of what it may be.
-fn worst(renderer: &mut Renderer, scene: &Scene, truth: &RadianceImage, of_pixel: f64) -> f64 {
+pub fn worst(renderer: &mut Renderer, scene: &Scene, truth: &RadianceImage, of_pixel: f64) -> f64 {
     let found = renderer.render(scene).unwrap();
     let floor = OF_BRIGHTEST / OF_PIXEL * of_pixel * brightest(scene);
     let pairs = found.as_slice().iter().zip(truth.as_slice());
@@ -148,7 +148,7 @@ fn worst(renderer: &mut Renderer, scene: &Scene, truth: &RadianceImage, of_pixel
 }
 
 #[track_caller]
-fn expect_true(name: &str, renderer: &mut Renderer, scene: &Scene, of_pixel: f64) {
+pub fn expect_true(name: &str, renderer: &mut Renderer, scene: &Scene, of_pixel: f64) {
     let truth = reference::render(scene).unwrap();
     assert!(peak(&truth) > 0.01, "{name}: the picture is dark");
     let worst = worst(renderer, scene, &truth, of_pixel);
@@ -156,7 +156,7 @@ fn expect_true(name: &str, renderer: &mut Renderer, scene: &Scene, of_pixel: f64
     assert!(worst < 1.0, "{name}: {worst}");
 }
 
-const FAR: DVec3 = DVec3::new(3.0, -8.0, 3.0);
+pub const FAR: DVec3 = DVec3::new(3.0, -8.0, 3.0);
 const WITHIN: DVec3 = DVec3::new(0.4, -0.9, 0.3);
 
 fn fading(mut scene: Scene, power: u32, beta: f64) -> Scene {

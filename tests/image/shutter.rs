@@ -28,7 +28,7 @@ const SCENES: [&str; 3] = [
      to = [0.7, 0, 0]\nradius = 0.02\n",
 ];
 
-fn scene(text: &str) -> AnimatedScene {
+pub fn scene(text: &str) -> AnimatedScene {
     AnimatedScene::from_toml(format!(
         "[image]\nwidth = 64\nheight = 48\n[time]\nshutter = 0.5\n{text}"
     ))
@@ -36,7 +36,7 @@ fn scene(text: &str) -> AnimatedScene {
 }
 
 /// The mean of frames at the middles of equal times.
-fn mean(
+pub fn mean(
     renderer: &mut Renderer,
     scene: &AnimatedScene,
     times: &Range<f64>,
