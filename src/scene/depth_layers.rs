@@ -146,8 +146,7 @@ impl DepthLayers {
         Ok(())
     }
 
-    /// Returns scenes whose depths are as many as their pixels, and which share of each pixel shows them; `None`: all of
-    /// it.
+    /// Returns scenes whose depths are as many as their pixels, and which share of each pixel shows them; `None`: all.
     pub(crate) fn parts<'a>(
         &'a self,
         scene: &'a Scene,

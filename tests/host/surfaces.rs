@@ -1,5 +1,5 @@
-//! Frames of a host with surfaces: metaballs and colliders end the light's rays, and their light is added on the device.
-//! They are the pictures that are read back, within what float32 loses where light is added in another order.
+//! Frames of a host with surfaces: metaballs and colliders end the light's rays, and their light is added on the
+//! device. They are the pictures that are read back, within what float32 loses where light is added in another order.
 #![allow(unsafe_code)] // hosts call OpenCL
 
 use crate::common;
