@@ -281,6 +281,7 @@ impl DeviceRenderer {
                     Err(error) => drawn = Err(error),
                 }
             }
+            film.leave_unfinished(false); // wherever it ended
             host.end(&self.compute, &mut film, frame, drawn)
         });
         (self.film, self.host) = (film, Some(host));

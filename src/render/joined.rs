@@ -104,7 +104,6 @@ impl DeviceRenderer {
             let added = Added::Film(part);
             adder.add(compute, (film, size), added, shares.as_deref(), is_first)?;
         }
-        film.leave_unfinished(false);
         if let Some(bloom) = bloom {
             spreader.spread(compute, film, scene.image, bloom)?;
         }

@@ -8,7 +8,9 @@ use std::time::Duration;
 use crate::common::host::Host;
 use crate::common::layer::{Layer, with_layer};
 use energywave::HostTarget;
+use energywave::scene::{Antialias, Metaballs, PointList};
 use energywave::{Error, Renderer, Scene};
+use glam::DVec3;
 use opencl3::event::{Event, create_user_event, set_user_event_status};
 use opencl3::memory::{
     CL_FLOAT, CL_MEM_READ_ONLY, CL_MEM_READ_WRITE, CL_MEM_WRITE_ONLY, CL_RGBA, CL_UNSIGNED_INT8,
@@ -92,6 +94,67 @@ fn a_call_that_fails_is_an_error_and_the_hosts_next_frame_is_right() {
                     assert!(found == expected.as_slice(), "{call}, {nth}");
                 }
             }
+        }
+        assert_eq!(layer.finishes(host.queue.get()), 0);
+    });
+}
+
+/// Two frames with surfaces, whose edges lie within pixels.
+fn surfaces() -> [Scene; 2] {
+    film().map(|mut scene| {
+        (scene.image.width, scene.image.height) = (40, 24);
+        scene.integration.antialias = Antialias::Footprint;
+        scene.tori.clear();
+        let place = 0.4 * scene.camera.eye + DVec3::X * scene.spheres[0].center.x;
+        let points = PointList::new(vec![place]).unwrap();
+        scene.metaballs.push(Metaballs::new(points, 2.0));
+        scene
+    })
+}
+
+/// The largest difference, as a share of the brightest.
+fn off(found: &[f32], expected: &[f32]) -> f32 {
+    let brightest = expected.iter().copied().fold(0.0, f32::max);
+    let pairs = found.iter().zip(expected);
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max) / brightest
+}
+
+#[test]
+fn a_call_that_fails_while_surfaces_are_drawn_is_an_error_and_the_next_frame_is_right() {
+    with_layer(|| {
+        let layer = Layer::new();
+        let host = Host::new(0);
+        let mut renderer = Renderer::on_host(&host.context, &host.queue).unwrap();
+        let [first, second] = surfaces();
+        let expected = renderer.render(&second).unwrap();
+        let buffer = host.buffer(CL_MEM_READ_WRITE, first.image);
+        let target = HostTarget::from(&buffer);
+        let mut draw = |scene| enqueue(&mut renderer, scene, target, &[]);
+        for call in [
+            "clEnqueueMarkerWithWaitList",
+            "clEnqueueWriteBuffer",
+            "clEnqueueReadBuffer",
+            "clEnqueueNDRangeKernel",
+        ] {
+            let mut most = 0;
+            for nth in 1.. {
+                let event = draw(&first).unwrap();
+                let other = host.read(target, first.image, &[&event]);
+                assert!(off(&other, expected.as_slice()) > 1e-2, "{call}, {nth}");
+                layer.fail(call, nth, OUT_OF_RESOURCES);
+                let outcome = draw(&second);
+                if layer.disarm() == 0 {
+                    break;
+                }
+                most = nth;
+                let words = outcome.map(drop).unwrap_err().to_string();
+                assert!(words.contains(", -5)"), "{call}, {nth}: {words}");
+                let event = draw(&second).unwrap();
+                let found = host.read(target, second.image, &[&event]);
+                let off = off(&found, expected.as_slice());
+                assert!(off <= 1e-6, "{call}, {nth}: {off:e}");
+            }
+            assert!(most > 1, "{call}: {most}");
         }
         assert_eq!(layer.finishes(host.queue.get()), 0);
     });
