@@ -357,3 +357,36 @@ fn slanted_lines_have_no_beads() {
     assert!(of_means < 1.15, "{of_means}");
     assert!(beads(Antialias::None) > 2.0);
 }
+
+/// By how much of itself all light of a core without a radius may change where its rays are led away from it: its mean
+/// is that of one a sixty-fourth of a pixel thick.
+const MOST_CHANGE_OF_BARE: f64 = 0.1;
+
+/// By how much of itself all light of a beam that is seen in the middle of the picture changes, where the rays of a
+/// column of pixels meet it exactly.
+fn change_where_met(options: &str) -> f64 {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/scenes/2006-figure-5-3-40.toml"
+    );
+    let mut scene = Scene::from_file(file).unwrap();
+    (scene.image.width, scene.image.height) = (128, 128);
+    scene.integration.antialias = Antialias::Footprint;
+    let mut renderer = renderer(device().lanes, options);
+    let mut light = |right: f64| {
+        scene.camera.jitter.x = right;
+        let image = renderer.render(&sampled(&scene, Sampling::Pixels)).unwrap();
+        let pixels = image.as_slice().iter();
+        pixels.map(|value| f64::from(*value)).sum::<f64>()
+    };
+    let (beside, met) = (light(0.4), light(0.5));
+    (met / beside - 1.0).abs()
+}
+
+#[test]
+fn a_line_that_rays_meet_exactly_is_as_bright_as_one_beside_them() {
+    let change = change_where_met("");
+    assert!(change < MOST_CHANGE_OF_BARE, "{change}");
+    let spoiled = change_where_met("-D ALONG_ROUNDED=0.0f");
+    assert!(spoiled > 1.0, "{spoiled}");
+}

@@ -34,6 +34,10 @@
 #endif
 #define QUARTERED_FROM (4.0f * HALVED_FROM)
 #define BEND_DOUBT 0.5f
+// So little of the way to a line lies along it by rounding: a ray that meets a core is led away from it, not along it.
+#ifndef ALONG_ROUNDED // a test spoils it
+#define ALONG_ROUNDED 1e-2f
+#endif
 #define TRUST_IN_RIM 0.75f
 // No ray passes a core closer than this, nor the rim; by so much farther off does the second ray.
 #define LEAST_PASS 0.4f
@@ -104,7 +108,8 @@ INLINE CoreSeen core_seen(const View *const view, const Square *const square, co
     core.along_right = -copysign(core.below, turn * core.below),
     core.along_below = copysign(core.right, turn * core.right);
     core.across = dot3(core.across_axis, beside) * core.per_length;
-    core.along = dot3(core.along_axis, beside) * core.per_length;
+    const floatv along = dot3(core.along_axis, beside) * core.per_length;
+    core.along = select(select(along, splat(0.0f), fabs(along) < ALONG_ROUNDED), along, core.is_point);
     return core;
 }
 
