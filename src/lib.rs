@@ -70,6 +70,7 @@ mod shown;
 mod threads;
 #[cfg(feature = "json")]
 pub mod verify;
+pub mod volume;
 mod wave;
 
 pub use cost::FrameCost;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use energywave::glam::DVec3;
 use energywave::image::{Exposure, ImageSize};
 use energywave::{RendererOptions, SlowStart};
 
@@ -36,6 +37,9 @@ pub enum Command {
     /// Draw a scene again whenever it is saved: to a file, or in a window
     #[command(after_help = examples::WATCH)]
     Watch(WatchArguments),
+    /// Sample the light that space gives off on a grid, for programs that draw volumes
+    #[command(after_help = examples::BAKE)]
+    Bake(BakeArguments),
     /// Write a scene to begin with: a preset, with comments that say what to change
     #[command(after_help = examples::NEW)]
     New(NewArguments),
@@ -185,6 +189,25 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if (0.0..=3600.0).contains(&seconds) => Ok(seconds),
         _ => Err("a time is a number of seconds up to 3600".to_owned()),
+    }
+}
+
+pub(super) fn point(text: &str) -> Result<DVec3, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .filter_map(|it| it.trim().parse().ok())
+        .collect();
+    let point = match (numbers.as_slice(), text.matches(',').count()) {
+        (&[x, y, z], 2) => DVec3::new(x, y, z),
+        (&[all], 0) => DVec3::splat(all),
+        _ => DVec3::NAN,
+    };
+    match point.is_finite() {
+        true => Ok(point),
+        false => Err(
+            "three numbers with commas between them, such as 0,1.5,-2, or one for all three"
+                .to_owned(),
+        ),
     }
 }
 

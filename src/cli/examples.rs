@@ -34,6 +34,12 @@ Without -o, in a window, of a program that was built with it (cargo install --fe
 on, arrow keys go from frame to frame, dragging turns the camera, with the right button it goes through the time, the \
 wheel comes closer, Home goes back, Esc ends. A red frame means that the scene has a fault; the title says which.";
 
+pub const BAKE: &str = "\
+Examples:
+  energywave bake nova.toml -o nova.vdb --cells 256
+  energywave bake laser.toml -o laser.vdb --cells 256 --box 0,0,0 4,1,1 --half
+  energywave bake nova.toml -o nova.raw --mean 4 --time 0.5";
+
 pub const NEW: &str = "\
 Examples:
   energywave new --list

@@ -2,6 +2,7 @@
 
 mod animate;
 mod args;
+mod bake;
 mod bench;
 mod bench_2008;
 mod bench_2013;
@@ -72,6 +73,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
         Command::Render(arguments) => render::run(arguments),
         Command::Animate(arguments) => animate::run(&arguments),
         Command::Watch(arguments) => watch::run(arguments),
+        Command::Bake(arguments) => bake::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -3,12 +3,41 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use energywave::glam::DVec3;
 use energywave::image::ImageSize;
 
 use super::animate::{Range, range};
-use super::args::{DeviceArgument, seconds, size, tolerance};
+use super::args::{DeviceArgument, point, seconds, size, time, tolerance};
 use super::overrides::Overrides;
 use super::records::DataArgument;
+
+#[derive(Debug, Args)]
+pub struct BakeArguments {
+    /// Scene file, TOML or (.json) JSON; - is standard input
+    pub scene: PathBuf,
+    /// Volume to write: .vdb, .nrrd, .vti, or .raw with a .json beside it
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Cells along the longest edge of the box, at most 2048; they are cubes
+    #[arg(long, value_name = "N", default_value_t = 128)]
+    pub cells: u32,
+    /// Box that is sampled: its middle and its edges, world units, such as 0,0,0 4,2,2 [default: around all light, which
+    /// must have a reach]
+    #[arg(long = "box", num_args = 2, value_names = ["MIDDLE", "EDGES"], value_parser = point, allow_hyphen_values = true)]
+    pub bounds: Option<Vec<DVec3>>,
+    /// Give each cell the mean of NxNxN places in it; 1: what its middle gives off [default: 1; 4 where a core without
+    /// radius gives off light without end]
+    #[arg(long, value_name = "N")]
+    pub mean: Option<u32>,
+    /// Write half floats, into a .vdb
+    #[arg(long)]
+    pub half: bool,
+    /// When it is in a scene that moves, seconds [default: 0]
+    #[arg(long, value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
+    pub time: Option<f64>,
+    #[command(flatten)]
+    pub device: DeviceArgument,
+}
 
 #[derive(Debug, Args)]
 pub struct NewArguments {

@@ -3,6 +3,7 @@
 //!
 //! [`render_simpson`] is the paper's composite rule in float64, to check the kernels' Simpson sums.
 
+mod emission;
 mod field;
 mod footprint;
 mod particles;
@@ -14,6 +15,7 @@ use std::slice;
 
 use glam::DVec3;
 
+pub(crate) use emission::Emitter;
 #[doc(hidden)]
 pub use field::{CurveField, Field, Sample, Source, b_spline, sources};
 #[doc(hidden)]

@@ -1,5 +1,6 @@
 //! The renderer: one front for the OpenCL devices and the built-in reference.
 
+mod bake;
 mod bloom;
 mod device;
 mod engines;

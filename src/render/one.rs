@@ -15,6 +15,7 @@ use crate::opencl::{
     Adder, Compute, Film, HostDepths, HostLink, MappedFilm, OpenClDevice, Pixel, RendererOptions,
 };
 use crate::scene::{Ray, Scene, SeenSurfaces};
+use crate::volume::{CellValue, Grid, Volume};
 use crate::wave::Wave;
 
 /// A device with its engines and its film, which are kept from frame to frame.
@@ -185,6 +186,18 @@ impl DeviceRenderer {
             self.bloom(size, &mut target[..4 * len], &bloom)?;
         }
         Ok(is_built.then(|| begun.elapsed()))
+    }
+
+    /// Samples the emission of a valid scene in the cells of a grid.
+    pub(crate) fn bake(
+        &mut self,
+        scene: &Scene,
+        cells: (Grid, CellValue),
+        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<Volume> {
+        self.engines
+            .wave
+            .bake(&self.compute, scene, cells, progress)
     }
 
     /// Returns linear RGBA along single rays; light is measured over the parameter s.

@@ -3,14 +3,30 @@
 use glam::DVec3;
 
 use super::kinds::for_each_kind;
-use super::source::SourceKind;
-use super::{Camera, Scene};
+use super::source::{Falloff, HasLight, SourceKind};
+use super::{Camera, Profile, Scene};
 
 /// Rays of a length that no camera names go so many times as far from the projection plane as what they look at.
 const TIMES_BEYOND: f64 = 5.0;
 
 /// What float32 devices can integrate along, world units.
 const LONGEST: f64 = 1e9;
+
+/// How far a Gaussian is bright, in its radii: beyond is less than 4e-6 of its peak.
+const BRIGHT_RADII: f64 = 5.0;
+
+/// Returns how far from its core there is light; `None`: everywhere.
+fn end_of(falloff: Falloff) -> Option<f64> {
+    let of_gaussian = BRIGHT_RADII * falloff.radius;
+    match falloff.profile {
+        Profile::Gaussian => Some(
+            falloff
+                .reach
+                .map_or(of_gaussian, |reach| reach.min(of_gaussian)),
+        ),
+        _ => falloff.reach,
+    }
+}
 
 /// A box along the axes of the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,6 +131,22 @@ macro_rules! define_extent {
                     extent.ended.join(low + place - reach, high + place + reach);
                 }
                 extent
+            }
+
+            /// Returns the lowest and the highest corner of a box around all light of all sources, world space; `None`
+            /// where there are none, or the light of any has no end.
+            #[must_use]
+            pub fn light_bounds(&self) -> Option<[DVec3; 2]> {
+                let mut bounds = Bounds::EMPTY;
+                $(for source in &self.$list {
+                    let reaches = source.lights().map(|light| end_of(light.falloff));
+                    let reach = reaches.reduce(|one, other| Some(one?.max(other?))).flatten()?;
+                    let core = source.core();
+                    core.ball()?; // lines have none
+                    let (low, high) = core.bounds();
+                    bounds.join(low - reach, high + reach);
+                })*
+                bounds.low.cmple(bounds.high).all().then_some([bounds.low, bounds.high])
             }
         }
     };

@@ -191,6 +191,7 @@ impl Wave {
         let events = match plan.task.rays {
             Rays::Pixels => vec![enqueue(&[], items, group)?],
             Rays::Listed => vec![enqueue(&[("rays", self.lists.rays())], items, group)?],
+            Rays::Cells => Vec::new(), // which are no pixels: `bake` launches them
             Rays::Tiles => {
                 let workers = tiles::workers(device, &self.options) as usize;
                 let tiles = |pass: &_| {
@@ -266,7 +267,7 @@ impl Wave {
         cost.launches += launched.events.len() as u32;
         cost.integrals += match plan.task.rays {
             Rays::Tiles => counted[counts::INTEGRALS],
-            Rays::Pixels | Rays::Listed => launched.integrals,
+            Rays::Pixels | Rays::Listed | Rays::Cells => launched.integrals,
         };
         cost.samples += match plan.task.method {
             Variant::Simpson | Variant::Jittered => launched.samples as u64,

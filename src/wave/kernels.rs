@@ -66,6 +66,8 @@ pub(crate) enum Rays {
     Tiles,
     /// Those of a list.
     Listed,
+    /// None: fields are sampled in the cells of a grid.
+    Cells,
 }
 
 /// A way to integrate that has kernels of its own.
@@ -163,6 +165,7 @@ fn task_text(task: &Task) -> (&'static str, String) {
         Rays::Pixels => ("wave/render.cl", "render"),
         Rays::Tiles => ("wave/tiles/tiles.cl", "tiles"),
         Rays::Listed => ("wave/trace.cl", "trace"),
+        Rays::Cells => ("wave/bake.cl", "bake"),
     };
     (name, resolve(file, &task.kinds))
 }

@@ -6,6 +6,8 @@ use crate::scene::kinds::{KIND_COUNT, for_each_kind};
 
 /// The wave's own files; those of the kinds are in the rows of the table.
 const FILES: &[SourceFile<'static>] = embed!(
+    "wave/bake.cl",
+    "wave/cells.h",
     "wave/footprint/closest.h",
     "wave/footprint/footprint.h",
     "wave/footprint/mean.h",

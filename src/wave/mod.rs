@@ -1,6 +1,7 @@
 //! The wave: the engine that integrates light along rays on an OpenCL device. A frame is planned ([`Wave::plan`]), then
 //! drawn into a [`Film`](crate::opencl::Film).
 
+mod bake;
 mod counts;
 mod dispatch;
 mod kernels;

@@ -55,7 +55,7 @@ impl Plan {
     ) -> Self {
         let first_tile_size = match task.rays {
             Rays::Tiles => tiles::first_size(image),
-            Rays::Pixels | Rays::Listed => 0,
+            Rays::Pixels | Rays::Listed | Rays::Cells => 0,
         };
         let (grain, most_pixels, most_sources) = match task.rays {
             Rays::Tiles => (
@@ -63,7 +63,7 @@ impl Plan {
                 tiles::most_pixels(counts.iter().sum()),
                 tiles::MOST_SOURCES,
             ),
-            Rays::Pixels | Rays::Listed => (MOST_LANES, u32::MAX, u64::MAX),
+            Rays::Pixels | Rays::Listed | Rays::Cells => (MOST_LANES, u32::MAX, u64::MAX),
         };
         let work = Work {
             node_count: match task.method {

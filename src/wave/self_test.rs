@@ -20,7 +20,7 @@ use crate::scene::{
 use crate::threads;
 
 /// The step from one compared pixel to the next: a number that shares no divisor with the width and the lanes.
-const STRIDE: usize = 97;
+pub(super) const STRIDE: usize = 97;
 
 /// The relative error that a pixel may have even if the tolerance is smaller: what float32 and half floats lose.
 const LEAST_LIMIT: f64 = 1e-3;
@@ -71,12 +71,34 @@ impl Wave {
 
     fn check(&mut self, compute: &Compute, task: Task, scene: &Scene) -> Result<()> {
         self.pace.slow_down(); // several launches for pixels, and for sources
+        let wrong = match task.rays {
+            Rays::Cells => self.wrong_cells(compute, scene)?,
+            _ => self.wrong_pixels(compute, task, scene)?,
+        };
+        let Some(reason) = wrong else {
+            return Ok(());
+        };
+        let device = compute.device();
+        Err(Error::SelfTest {
+            device: device.name.clone(),
+            driver: format!("{} {}", device.platform, device.driver),
+            reason,
+        })
+    }
+
+    /// Compares some pixels of a scene with the reference; returns what is wrong.
+    fn wrong_pixels(
+        &mut self,
+        compute: &Compute,
+        task: Task,
+        scene: &Scene,
+    ) -> Result<Option<String>> {
         let found = self.draw_known(compute, task, scene)?;
         let plane = scene.view_plane();
         let tracer = Tracer::new(scene, scene.integration.method);
         let limit = scene.integration.method.tolerance().max(LEAST_LIMIT);
         let compared: Vec<usize> = (0..found.len()).step_by(STRIDE).collect();
-        let wrong = threads::find_any(&compared, |index| {
+        Ok(threads::find_any(&compared, |index| {
             let expected = tracer.pixel(scene, &plane, index);
             let limit = match tracer.is_mean(scene, &plane, index) {
                 true => MEAN_LIMIT,
@@ -89,16 +111,7 @@ impl Wave {
                     found[index]
                 )
             })
-        });
-        let Some(reason) = wrong else {
-            return Ok(());
-        };
-        let device = compute.device();
-        Err(Error::SelfTest {
-            device: device.name.clone(),
-            driver: format!("{} {}", device.platform, device.driver),
-            reason,
-        })
+        }))
     }
 
     /// Draws the pixels of the known scene by the very kernels of a task.
@@ -106,7 +119,7 @@ impl Wave {
         let size = scene.image;
         let mut film = Film::in_format(compute, task.film, size.width, size.height)?;
         let plan = match task.rays {
-            Rays::Pixels | Rays::Tiles => self.plan(compute, scene, task.film)?,
+            Rays::Pixels | Rays::Tiles | Rays::Cells => self.plan(compute, scene, task.film)?,
             Rays::Listed => {
                 let plane = scene.view_plane();
                 let ray = |i| plane.ray(i % size.width, i / size.width);
@@ -198,7 +211,7 @@ fn known_scenes(task: Task) -> Result<[Scene; 2]> {
 fn integration(task: Task, softening: f64) -> Integration {
     let sampling = match task.rays {
         Rays::Tiles => Sampling::Tiles,
-        Rays::Pixels | Rays::Listed => Sampling::Pixels,
+        Rays::Pixels | Rays::Listed | Rays::Cells => Sampling::Pixels,
     };
     let method = match task.method {
         Variant::Simpson => Method::Simpson { divisions: 64 },

@@ -38,8 +38,9 @@
 #define KIND_split JOIN(KIND, _split)
 
 // What the templates make of that.
-#define KIND_emission JOIN(KIND, _emission) // ../radiance.h
-#define KIND_simpson JOIN(KIND, _simpson)   // ../quadrature/simpson.h
+#define KIND_emission JOIN(KIND, _emission)     // ../radiance.h
+#define KIND_simpson JOIN(KIND, _simpson)       // ../quadrature/simpson.h
+#define KIND_add_to_row JOIN(KIND, _add_to_row) // ../cells.h
 #define KIND_edge JOIN(KIND, _edge)
 #define KIND_trim JOIN(KIND, _trim)
 #define KIND_panel JOIN(KIND, _panel) // ../quadrature/adaptive.h, with what follows

@@ -93,6 +93,25 @@ device_struct! {
 }
 
 device_struct! {
+    /// Cells of a grid, some of its layers.
+    Cells [64] {
+        first: [f32; 4] = 0,
+        step: f32 = 16,
+        floor2: f32 = 20,
+        share: f32 = 24,
+        parts: u32 = 28,
+        columns: u32 = 32,
+        rows: u32 = 36,
+        count: u32 = 40,
+        stride: u32 = 44,
+        plane: u32 = 48,
+        padding0: u32 = 52,
+        padding1: u32 = 56,
+        padding2: u32 = 60,
+    }
+}
+
+device_struct! {
     /// A quadrature node.
     Node [8] {
         s: f32 = 0,
@@ -100,7 +119,7 @@ device_struct! {
     }
 }
 
-by_value!(View, Integrand, Launch, TilePass);
+by_value!(View, Integrand, Launch, TilePass, Cells);
 
 macro_rules! list_structs {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
@@ -113,6 +132,7 @@ macro_rules! list_structs {
             Launch::LAYOUT,
             TilePass::LAYOUT,
             RayRecord::LAYOUT,
+            Cells::LAYOUT,
             Node::LAYOUT,
             $(super::$kind::$Type::LAYOUT,)*
         ];

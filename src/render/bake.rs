@@ -1,0 +1,108 @@
+//! The light that space gives off, sampled into volumes.
+
+use std::ops::ControlFlow;
+
+use super::{Renderer, RendererBackend};
+use crate::error::{Error, Result};
+use crate::reference::Emitter;
+use crate::scene::{Reduction, Scene};
+use crate::threads;
+use crate::volume::{BRICK, CellValue, Grid, Volume};
+
+/// Most places along an edge of a cell.
+const MOST_PARTS: u32 = 16;
+
+impl Scene {
+    /// Returns what cells are best given: the emission in their middles where all cores have a thickness, else means of
+    /// 4x4x4 places, because light has no end next to a core that has none.
+    #[must_use]
+    pub fn cell_value(&self) -> CellValue {
+        let is_endless = |it: crate::scene::Falloff| it.radius == 0.0;
+        match self.integration.softening == 0.0 && self.any_falloff(is_endless) {
+            true => CellValue::Mean(4),
+            false => CellValue::Center,
+        }
+    }
+
+    /// Refuses what has no emission at a point.
+    fn check_bake(&self, value: CellValue) -> Result<()> {
+        let refuse = |message: &str| Err(Error::Unsupported(message.to_owned()));
+        if self.integration.reduction == Reduction::Rms {
+            return refuse(
+                "with reduction \"rms\" points of space give off no light: bake a scene with \"sum\"",
+            );
+        }
+        if self.has_particles() || !self.waves.is_empty() {
+            return refuse("particles are not baked: bake the scene without them");
+        }
+        if let CellValue::Mean(parts) = value
+            && !(1..=MOST_PARTS).contains(&parts)
+        {
+            return refuse("means are of 1 to 16 places along an edge of a cell");
+        }
+        Ok(())
+    }
+}
+
+impl Renderer {
+    /// Samples the emission of a scene, colour times coefficient times field summed over its sources, in the cells of a
+    /// grid: linear RGB, what a world unit of a ray's length gives off there. The light of a ray that does not fade,
+    /// measured by length, is its integral. Decay, absorption, camera and depth play no part; surfaces give off no such
+    /// light. Several devices leave it to their first.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`]; [`Error::OutOfMemory`] if a volume does not fit; [`Error::Unsupported`] for
+    /// particles, for roots of squares, and for means of no or more than 16 places; [`Error::Interrupted`] if
+    /// `progress`, which hears the share that is done, says so.
+    pub fn bake(
+        &mut self,
+        scene: &Scene,
+        grid: Grid,
+        value: CellValue,
+        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<Volume> {
+        self.check(scene)?;
+        scene.check_bake(value)?;
+        match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.bake(scene, (grid, value), progress),
+            RendererBackend::Several(renderer) => {
+                renderer.first().bake(scene, (grid, value), progress)
+            }
+            RendererBackend::Reference { .. } => bake_reference(scene, (grid, value), progress),
+        }
+    }
+}
+
+/// Samples in float64 on the host.
+fn bake_reference(
+    scene: &Scene,
+    (grid, value): (Grid, CellValue),
+    progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+) -> Result<Volume> {
+    let emitter = Emitter::new(scene);
+    let [columns, rows, layers] = grid.cells();
+    let mut volume = Volume::new(grid, value);
+    let columns = columns as usize;
+    for layer in 0..layers.div_ceil(BRICK) {
+        let first = layer * BRICK;
+        let height = BRICK.min(layers - first);
+        let plane = columns * (rows * height) as usize;
+        let mut cells = vec![[0.0_f32; 3]; plane];
+        threads::for_each_chunk(&mut cells, columns, |row, cells| {
+            let (y, z) = (row as u32 % rows, first + row as u32 / rows);
+            for (x, cell) in (0..).zip(cells) {
+                *cell = emitter
+                    .in_cell(&grid, value, [x, y, z])
+                    .as_vec3()
+                    .to_array();
+            }
+        });
+        let channel = |channel: usize| cells.iter().map(move |cell| cell[channel]);
+        let values: Vec<f32> = (0..3).flat_map(channel).collect();
+        volume.add_layer(layer, &values, columns)?;
+        if progress((first + height) as f32 / layers as f32).is_break() {
+            return Err(Error::Interrupted);
+        }
+    }
+    Ok(volume)
+}

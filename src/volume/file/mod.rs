@@ -1,0 +1,156 @@
+//! Volumes as other programs read them. All numbers are little-endian.
+
+mod nrrd;
+mod raw;
+mod vdb;
+mod vti;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use super::{CellValue, Volume};
+use crate::error::{Error, Result};
+use crate::output::{Output, Sink, TextFile};
+use crate::shown;
+
+/// A kind of file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VolumeFormat {
+    /// `.vdb`, OpenVDB: a sparse grid `density`, the largest channel of the emission, and a sparse grid `color`, the
+    /// emission divided by that. Float32 or, where `half` says so, half floats.
+    Vdb {
+        /// Whether values are halves.
+        half: bool,
+    },
+    /// `.nrrd`, float32 RGB, dense.
+    Nrrd,
+    /// `.vti`, VTK image data: the cell data `emission`, float32 RGB, dense.
+    Vti,
+    /// `.raw`, float32 RGB, x fastest, then y, then z, dense; a JSON beside it says so.
+    Raw,
+}
+
+impl VolumeFormat {
+    /// Returns the format that the ending of a name says.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for other endings, and where halves are asked of a format that has none.
+    pub fn of(path: &Path, half: bool) -> Result<Self> {
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let ending = ending.map(str::to_ascii_lowercase);
+        let format = match ending.as_deref() {
+            Some("vdb") => return Ok(Self::Vdb { half }),
+            Some("nrrd") => Self::Nrrd,
+            Some("vti") => Self::Vti,
+            Some("raw") => Self::Raw,
+            _ => {
+                let name = shown(&path.display().to_string());
+                return Err(Error::Unsupported(format!(
+                    "{name}: a volume is a .vdb, .nrrd, .vti or .raw"
+                )));
+            }
+        };
+        match half {
+            true => Err(Error::Unsupported(
+                "half floats are of .vdb files: write one, or leave them out".to_owned(),
+            )),
+            false => Ok(format),
+        }
+    }
+}
+
+/// A file of a volume that is known to be writable before the work.
+#[derive(Debug)]
+pub struct VolumeFile {
+    format: VolumeFormat,
+    output: Output,
+    /// What stands beside it: its name, and the file.
+    beside: Option<(PathBuf, TextFile)>,
+}
+
+impl VolumeFile {
+    /// Makes sure that `path`, and what stands beside it, can be written, and changes nothing yet.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if it is a folder, its folder is missing, or it cannot be written; [`Error::Unsupported`] as
+    /// [`VolumeFormat::of`].
+    pub fn create(path: &Path, half: bool) -> Result<Self> {
+        let format = VolumeFormat::of(path, half)?;
+        let json = path.with_extension("json");
+        Ok(Self {
+            format,
+            output: Output::create(path)?,
+            beside: match format {
+                VolumeFormat::Raw => Some((json.clone(), TextFile::create(json)?)),
+                _ => None,
+            },
+        })
+    }
+
+    /// Writes all, and puts the file in its place. `notes`, names and values, go into what the format has for them.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if it cannot be written; nothing is left behind then.
+    pub fn write(self, volume: &Volume, notes: &[(String, String)]) -> Result<()> {
+        let notes: Vec<_> = facts(volume).into_iter().chain(notes.to_vec()).collect();
+        let format = self.format;
+        self.output.write_with(|sink| match format {
+            VolumeFormat::Vdb { half } => vdb::write(sink, volume, half, &notes),
+            VolumeFormat::Nrrd => nrrd::write(sink, volume, &notes),
+            VolumeFormat::Vti => vti::write(sink, volume, &notes),
+            VolumeFormat::Raw => write_dense(sink, volume),
+        })?;
+        match self.beside {
+            Some((_, file)) => file.write(&raw::json(volume, &notes)),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the name of what stands beside it.
+    #[must_use]
+    pub fn beside(&self) -> Option<&Path> {
+        self.beside.as_ref().map(|(path, _)| path.as_path())
+    }
+}
+
+/// Returns what every file says of itself.
+fn facts(volume: &Volume) -> Vec<(String, String)> {
+    let values = match volume.value() {
+        CellValue::Center => "emission at the middle of each cell".to_owned(),
+        CellValue::Mean(parts) => {
+            format!("mean emission of each cell, of {parts}x{parts}x{parts} places")
+        }
+    };
+    let note = |name: &str, value: String| (name.to_owned(), value);
+    vec![
+        note(
+            "software",
+            concat!("energywave ", env!("CARGO_PKG_VERSION")).to_owned(),
+        ),
+        note("values", values),
+        note("unit", "linear RGB light a world unit of length".to_owned()),
+    ]
+}
+
+/// Writes all cells, RGB after RGB, x fastest.
+fn write_dense(sink: &mut dyn Sink, volume: &Volume) -> io::Result<()> {
+    let [columns, rows, layers] = volume.grid().cells();
+    let mut row = vec![0.0; 3 * columns as usize];
+    let mut bytes = Vec::with_capacity(4 * row.len());
+    for z in 0..layers {
+        for y in 0..rows {
+            volume.read_row(y, z, &mut row);
+            bytes.clear();
+            bytes.extend(row.iter().flat_map(|value| value.to_le_bytes()));
+            sink.write_all(&bytes)?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes a point as three numbers.
+fn numbers(point: DVec3, between: &str) -> String {
+    point.to_array().map(|it| it.to_string()).join(between)
+}
