@@ -60,17 +60,18 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 13] = [
+const LAYERS: [(&str, &[&str]); 14] = [
     ("image", &[]),
+    ("volume", &["image"]),
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
     ("glow", &["image", "opencl", "scene"]),
     ("metaball", &["image", "opencl", "scene"]),
     ("scene", &["image"]),
     ("particle", &["scene"]),
-    ("reference", &["image", "scene"]),
+    ("reference", &["image", "scene", "volume"]),
     // The self-test compares with the reference.
-    ("wave", &["image", "opencl", "scene", "reference"]),
+    ("wave", &["image", "opencl", "scene", "reference", "volume"]),
     (
         "render",
         &[
@@ -82,6 +83,7 @@ const LAYERS: [(&str, &[&str]); 13] = [
             "particle",
             "scene",
             "reference",
+            "volume",
             "wave",
         ],
     ),

@@ -1,41 +1,30 @@
 //! `energywave bake`: the light that space gives off, as a volume for other programs.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use energywave::glam::DVec3;
 use energywave::volume::{CellValue, Grid, Volume, VolumeFile};
 use energywave::{Error, Renderer, Scene};
 
+use super::animate::Names;
 use super::progress::{Progress, catch_interrupts, was_interrupted};
 use super::subcommands::BakeArguments;
-use super::{Outcome, choose_devices, names, note, open_scene, shown, warn};
+use super::{Failure, Outcome, choose_devices, names, note, open_scene, shown, warn};
 
 pub fn run(arguments: &BakeArguments) -> Outcome {
-    // What it warns of is about pictures.
     let moving = open_scene(&arguments.scene)?;
-    let (scene, _) = moving.into_frame(arguments.time.unwrap_or(0.0), |_, _| Ok(()))?;
-    let grid = grid(arguments, &scene)?;
-    let value = match arguments.mean {
-        None => scene.cell_value(),
-        Some(1) => CellValue::Center,
-        Some(places) => CellValue::Mean(places),
-    };
-    let file = VolumeFile::create(&arguments.output, arguments.half)?;
+    let works = works(arguments)?;
+    let mut files = Vec::new();
+    for (path, time) in works {
+        // What it warns of is about pictures.
+        let (scene, _) = moving.at_with_warnings(time, |_, _| Ok(()))?;
+        let grid = grid(arguments, &scene)?;
+        files.push((scene, grid, VolumeFile::create(&path, arguments.half)?));
+    }
     catch_interrupts();
     let devices = choose_devices(arguments.device.device.as_deref())?;
-    let begun = Instant::now();
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
-    let mut progress = Progress::new();
-    let volume = renderer.bake(&scene, grid, value, &mut |share| progress.report(share))?;
-    drop(progress);
-    if was_interrupted() {
-        return Err(Error::Interrupted.into());
-    }
-    let took = begun.elapsed().as_secs_f64();
-    if volume.bricks().len() == 0 {
-        warn("all cells are black: no light reaches the box");
-    }
     let name = match arguments.scene == Path::new("-") {
         true => "standard input".to_owned(),
         false => shown(
@@ -46,13 +35,73 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
                 .to_string_lossy(),
         ),
     };
-    file.write(&volume, &[("scene".to_owned(), name)])?;
-    note(&format!(
-        "{} in {took:.2} s on {}",
-        told(&volume),
-        names(&devices)
-    ));
+    for (scene, grid, file) in files {
+        let begun = Instant::now();
+        let volume = baked(arguments, &mut renderer, &scene, grid)?;
+        let took = begun.elapsed().as_secs_f64();
+        if volume.bricks().next().is_none() {
+            warn("all cells are black: no light reaches the box");
+        }
+        note(&format!(
+            "{} in {took:.2} s on {}",
+            told(&volume),
+            names(&devices)
+        ));
+        warn_of_thin_cores(&scene, &volume);
+        let mut notes = vec![("scene".to_owned(), name.clone())];
+        if let Some(error) = renderer.bake_error(&scene, &volume)? {
+            let error = format!(
+                "median {:.1e}, 99.9 % at most {:.1e}, worst {:.1e}, of {} rays of the scene's camera",
+                error.median, error.most, error.worst, error.rays
+            );
+            note(&format!("error: {error}"));
+            notes.push(("error".to_owned(), error));
+        }
+        file.write(&volume, &notes)?;
+    }
     Ok(())
+}
+
+/// Says where the middles of cells meet cores by chance.
+fn warn_of_thin_cores(scene: &Scene, volume: &Volume) {
+    let cell = volume.grid().cell();
+    if volume.value() == CellValue::Center && scene.is_thinner_than(cell) {
+        warn(&format!(
+            "cells are {cell:.4} wide, and some core is thinner: it comes out as beads; more --cells help, or --mean 4, \
+             which takes longer"
+        ));
+    }
+}
+
+/// Returns the files to write, and when each is.
+fn works(arguments: &BakeArguments) -> Result<Vec<(PathBuf, f64)>, Error> {
+    let time = arguments.time.unwrap_or(0.0);
+    let Some(frames) = arguments.frames else {
+        return Ok(vec![(arguments.output.clone(), time)]);
+    };
+    let names = Names::of(&arguments.output)?;
+    let at = |frame: u32| (names.path(frame), time + f64::from(frame) / arguments.fps);
+    Ok((frames.first..=frames.last).map(at).collect())
+}
+
+fn baked(
+    arguments: &BakeArguments,
+    renderer: &mut Renderer,
+    scene: &Scene,
+    grid: Grid,
+) -> Result<Volume, Failure> {
+    let value = match arguments.mean {
+        None => scene.cell_value(),
+        Some(1) => CellValue::Center,
+        Some(places) => CellValue::Mean(places),
+    };
+    let mut progress = Progress::new();
+    let volume = renderer.bake(scene, grid, value, &mut |share| progress.report(share))?;
+    drop(progress);
+    match was_interrupted() {
+        true => Err(Error::Interrupted.into()),
+        false => Ok(volume),
+    }
 }
 
 /// Returns the box that was typed, else that around all light, cut into cells.
@@ -82,7 +131,7 @@ fn told(volume: &Volume) -> String {
         grid.cell(),
         point(low),
         point(high),
-        volume.bricks().len(),
+        volume.bricks().count(),
         grid.cells()
             .map(|cells| u64::from(cells.div_ceil(8)))
             .iter()

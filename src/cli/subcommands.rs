@@ -7,7 +7,7 @@ use energywave::glam::DVec3;
 use energywave::image::ImageSize;
 
 use super::animate::{Range, range};
-use super::args::{DeviceArgument, point, seconds, size, time, tolerance};
+use super::args::{DeviceArgument, point, rate, seconds, size, time, tolerance};
 use super::overrides::Overrides;
 use super::records::DataArgument;
 
@@ -15,7 +15,7 @@ use super::records::DataArgument;
 pub struct BakeArguments {
     /// Scene file, TOML or (.json) JSON; - is standard input
     pub scene: PathBuf,
-    /// Volume to write: .vdb, .nrrd, .vti, or .raw with a .json beside it
+    /// Volume to write: .vdb, .nrrd, .vti, or with a .json beside it .exr (layers side by side) or .raw
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Cells along the longest edge of the box, at most 2048; they are cubes
@@ -29,12 +29,18 @@ pub struct BakeArguments {
     /// radius gives off light without end]
     #[arg(long, value_name = "N")]
     pub mean: Option<u32>,
-    /// Write half floats, into a .vdb
+    /// Write half floats, into a .vdb or an .exr
     #[arg(long)]
     pub half: bool,
     /// When it is in a scene that moves, seconds [default: 0]
     #[arg(long, value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
     pub time: Option<f64>,
+    /// Write a volume for each of these frames: wave.vdb becomes wave.0000.vdb, wave.####.vdb and wave.%04d.vdb too
+    #[arg(long, value_name = "A..B", value_parser = range, allow_hyphen_values = true)]
+    pub frames: Option<Range>,
+    /// Frames a second
+    #[arg(long, value_name = "RATE", value_parser = rate, allow_hyphen_values = true, default_value_t = 24.0)]
+    pub fps: f64,
     #[command(flatten)]
     pub device: DeviceArgument,
 }

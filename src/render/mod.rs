@@ -30,6 +30,7 @@ use crate::image::{Bloom, RadianceImage, kept_image, spread_light};
 use crate::opencl::{MappedFilm, RendererOptions};
 use crate::reference::{self, Tracer};
 use crate::scene::{CheckedSources, DepthLayers, Ray, Scene};
+pub use bake::BakeError;
 use device::Backend;
 use one::{DeviceRenderer, Rows};
 use referenced::{draw_reference, reference_cost};

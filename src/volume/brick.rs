@@ -7,6 +7,9 @@ const EDGE: usize = BRICK as usize;
 /// Cells of a brick.
 const CELLS: usize = EDGE * EDGE * EDGE;
 
+/// What the cells of a brick take.
+pub(super) const BYTES: usize = size_of::<[[f32; CELLS]; 3]>();
+
 /// The emission of 8x8x8 cells, linear RGB; cells beyond the grid are 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Brick {

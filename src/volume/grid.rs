@@ -4,6 +4,7 @@ use std::fmt;
 
 use glam::DVec3;
 
+use super::BRICK;
 use crate::error::{Error, Result};
 
 /// Most cells along an edge: programs that read volumes take no more.
@@ -53,6 +54,11 @@ impl Grid {
         self.cells
     }
 
+    /// Returns how many bricks its cells are in, along x, y and z.
+    pub(super) fn bricks(&self) -> [u32; 3] {
+        self.cells.map(|count| count.div_ceil(BRICK))
+    }
+
     /// Returns the edge of a cell, world units.
     #[must_use]
     pub fn cell(&self) -> f64 {
@@ -72,18 +78,21 @@ impl Grid {
         self.low + self.cell * (DVec3::from(cell.map(f64::from)) + 0.5)
     }
 
-    /// Returns the lowest of the eight cells whose middles are around a point, and how far it is from that towards the
-    /// others, of a cell; `None` outside the box.
-    pub(super) fn around(&self, point: DVec3) -> Option<([u32; 3], [f64; 3])> {
-        let place = (point - self.low) / self.cell;
-        let end = DVec3::from(self.cells.map(f64::from));
-        if !(place.cmpge(DVec3::ZERO) & place.cmple(end)).all() {
-            return None;
+    /// Returns where a ray is in the box, as parameters of it; `None`: nowhere.
+    #[must_use]
+    pub fn crossed(&self, origin: DVec3, span: DVec3) -> Option<[f64; 2]> {
+        let [low, high] = self.bounds();
+        let (mut begin, mut end) = (0.0_f64, 1.0_f64);
+        for axis in 0..3 {
+            let one = (low[axis] - origin[axis]) / span[axis];
+            let other = (high[axis] - origin[axis]) / span[axis];
+            match span[axis] == 0.0 {
+                true if (low[axis]..=high[axis]).contains(&origin[axis]) => {}
+                true => return None,
+                false => (begin, end) = (begin.max(one.min(other)), end.min(one.max(other))),
+            }
         }
-        let place = (place - 0.5).clamp(DVec3::ZERO, end - 1.0);
-        let first = place.floor();
-        let share = place - first;
-        Some((first.to_array().map(|it| it as u32), share.to_array()))
+        (begin < end).then_some([begin, end])
     }
 }
 

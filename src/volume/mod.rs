@@ -7,15 +7,12 @@ mod brick;
 #[cfg(feature = "json")]
 mod file;
 mod grid;
+mod integral;
 
 pub use brick::Brick;
 #[cfg(feature = "json")]
 pub use file::{VolumeFile, VolumeFormat};
 pub use grid::Grid;
-
-use std::collections::BTreeMap;
-
-use glam::DVec3;
 
 use crate::error::{Error, Result};
 use crate::memory;
@@ -57,18 +54,23 @@ impl CellValue {
 pub struct Volume {
     grid: Grid,
     value: CellValue,
-    bricks: BTreeMap<[u32; 3], Brick>,
+    /// By their places, x fastest, then y, then z.
+    bricks: Vec<Option<Brick>>,
 }
 
 impl Volume {
     /// Makes a black one.
-    #[must_use]
-    pub fn new(grid: Grid, value: CellValue) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn new(grid: Grid, value: CellValue) -> Result<Self> {
+        let bricks = grid.bricks().map(|count| count as usize).iter().product();
+        check_memory(&grid, bricks * size_of::<Option<Brick>>())?;
+        Ok(Self {
             grid,
             value,
-            bricks: BTreeMap::new(),
-        }
+            bricks: vec![None; bricks],
+        })
     }
 
     /// Returns where its cells are.
@@ -83,16 +85,31 @@ impl Volume {
         self.value
     }
 
-    /// Returns the bricks in which something glows, by their places along z, y and x, counted in bricks.
-    pub fn bricks(&self) -> impl ExactSizeIterator<Item = ([u32; 3], &Brick)> {
-        self.bricks.iter().map(|(place, brick)| (*place, brick))
+    /// Returns the bricks in which something glows, with their places along x, y and z, counted in bricks.
+    pub fn bricks(&self) -> impl Iterator<Item = ([u32; 3], &Brick)> {
+        let [columns, rows, _] = self.grid.bricks();
+        let place = move |number: u32| {
+            [
+                number % columns,
+                number / columns % rows,
+                number / columns / rows,
+            ]
+        };
+        let numbered = (0..).zip(&self.bricks);
+        numbered.filter_map(move |(number, brick)| Some((place(number), brick.as_ref()?)))
     }
 
     /// Returns the emission of a cell, linear RGB; 0 outside the grid.
     #[must_use]
-    pub fn at(&self, [x, y, z]: [u32; 3]) -> [f32; 3] {
-        let brick = self.bricks.get(&[z / BRICK, y / BRICK, x / BRICK]);
-        brick.map_or([0.0; 3], |brick| brick.at([x, y, z].map(|it| it % BRICK)))
+    pub fn at(&self, cell: [u32; 3]) -> [f32; 3] {
+        let most = self.grid.cells();
+        if (0..3).any(|axis| cell[axis] >= most[axis]) {
+            return [0.0; 3];
+        }
+        let brick = &self.bricks[self.place(cell.map(|it| it / BRICK))];
+        brick
+            .as_ref()
+            .map_or([0.0; 3], |brick| brick.at(cell.map(|it| it % BRICK)))
     }
 
     /// Writes a row of cells along x into `row`, RGB after RGB.
@@ -100,8 +117,8 @@ impl Volume {
     /// # Panics
     /// Where `row` is no row of the grid.
     pub fn read_row(&self, y: u32, z: u32, row: &mut [f32]) {
-        let cells = self.grid.cells();
-        assert_eq!(row.len(), 3 * cells[0] as usize, "a row of the grid");
+        let [columns, ..] = self.grid.cells();
+        assert_eq!(row.len(), 3 * columns as usize, "a row of the grid");
         for (x, cell) in (0..).zip(row.as_chunks_mut::<3>().0) {
             *cell = self.at([x, y, z]);
         }
@@ -110,8 +127,13 @@ impl Volume {
     /// Returns the largest emission of any cell and channel.
     #[must_use]
     pub fn greatest(&self) -> f32 {
-        let of_bricks = self.bricks.values().map(Brick::greatest);
+        let of_bricks = self.bricks.iter().flatten().map(Brick::greatest);
         of_bricks.fold(0.0, f32::max)
+    }
+
+    fn place(&self, [x, y, z]: [u32; 3]) -> usize {
+        let [columns, rows, _] = self.grid.bricks().map(|count| count as usize);
+        (z as usize * rows + y as usize) * columns + x as usize
     }
 
     /// Adds a layer of bricks, the `layer`th along z: `values` are those of its cells, of which a row is `stride`
@@ -121,63 +143,40 @@ impl Volume {
     /// [`Error::OutOfMemory`].
     pub(crate) fn add_layer(&mut self, layer: u32, values: &[f32], stride: usize) -> Result<()> {
         let [columns, rows, layers] = self.grid.cells();
+        let [brick_columns, brick_rows, _] = self.grid.bricks();
         let depth = (layers - layer * BRICK).min(BRICK);
         let plane = values.len() / 3;
-        self.check_memory(columns.div_ceil(BRICK) * rows.div_ceil(BRICK))?;
-        for y in 0..rows.div_ceil(BRICK) {
-            for x in 0..columns.div_ceil(BRICK) {
+        check_memory(
+            &self.grid,
+            (brick_columns * brick_rows) as usize * brick::BYTES,
+        )?;
+        for y in 0..brick_rows {
+            for x in 0..brick_columns {
                 let (first_x, first_y) = (x * BRICK, y * BRICK);
-                let width = (columns - first_x).min(BRICK);
+                let width = (columns - first_x).min(BRICK) as usize;
                 let height = (rows - first_y).min(BRICK);
                 let mut brick = Brick::default();
                 for (channel, values) in values.chunks_exact(plane).enumerate() {
-                    for z in 0..depth {
-                        for y in 0..height {
-                            let row = (z * rows + first_y + y) as usize * stride + first_x as usize;
-                            brick.set_row(channel, [y, z], &values[row..row + width as usize]);
-                        }
+                    for (y, z) in (0..depth).flat_map(|z| (0..height).map(move |y| (y, z))) {
+                        let row = (z * rows + first_y + y) as usize * stride + first_x as usize;
+                        brick.set_row(channel, [y, z], &values[row..row + width]);
                     }
                 }
                 if brick.glows() {
-                    self.bricks.insert([layer, y, x], brick);
+                    let place = self.place([x, y, layer]);
+                    self.bricks[place] = Some(brick);
                 }
             }
         }
         Ok(())
     }
+}
 
-    fn check_memory(&self, bricks: u32) -> Result<()> {
-        let bytes = u64::from(bricks) * size_of::<Brick>() as u64;
-        match memory::shortage(bytes) {
-            Some(shortage) => Err(Error::OutOfMemory(format!(
-                "a volume of {} cells: {shortage}",
-                self.grid
-            ))),
-            None => Ok(()),
-        }
-    }
-
-    /// Returns the emission at a point of the world, linear RGB: that of the eight cells around it, interpolated. Beyond
-    /// the middles of the outermost cells it is theirs; outside the box there is none.
-    #[must_use]
-    pub fn emission(&self, point: DVec3) -> DVec3 {
-        let Some((first, share)) = self.grid.around(point) else {
-            return DVec3::ZERO;
-        };
-        let mut sum = DVec3::ZERO;
-        for corner in 0..8_u32 {
-            let bit = |axis: u32| corner >> axis & 1;
-            let cell = [0, 1, 2].map(|axis| {
-                let most = self.grid.cells()[axis as usize] - 1;
-                (first[axis as usize] + bit(axis)).min(most)
-            });
-            let weight = |axis: u32| match bit(axis) {
-                0 => 1.0 - share[axis as usize],
-                _ => share[axis as usize],
-            };
-            let light = DVec3::from(self.at(cell).map(f64::from));
-            sum += weight(0) * weight(1) * weight(2) * light;
-        }
-        sum
+fn check_memory(grid: &Grid, bytes: usize) -> Result<()> {
+    match memory::shortage(bytes as u64) {
+        Some(shortage) => Err(Error::OutOfMemory(format!(
+            "a volume of {grid} cells: {shortage}"
+        ))),
+        None => Ok(()),
     }
 }

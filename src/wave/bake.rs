@@ -39,7 +39,7 @@ impl Wave {
         (grid, value): (Grid, CellValue),
         progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
     ) -> Result<Volume> {
-        let mut volume = Volume::new(grid, value);
+        let mut volume = Volume::new(grid, value)?;
         let [_, rows, layers] = grid.cells();
         let task = self.prepare_cells(compute, scene, &grid)?;
         let mut cells = packed(&grid, value);

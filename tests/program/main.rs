@@ -17,6 +17,8 @@ mod bad_scenes;
 mod bad_series; // has every fault of a scene file named with its place
 mod bad_simulations; // has every fault of waves of particles named with its place
 mod bad_tracks;
+#[cfg(unix)] // as cli
+mod bake; // samples scenes on grids, and has other programs read them
 mod bench; // compares the speed tables' frames with float64, and reads what `energywave bench` says
 mod cameras; // reads matrices of engines, and refuses what is none
 #[cfg(unix)] // shells, signals and the loader's environment variables

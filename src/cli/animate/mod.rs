@@ -20,6 +20,7 @@ use energywave::{Device, Error, Renderer, Scene};
 use super::progress::{Progress, catch_interrupts, was_interrupted};
 use super::{Failure, Outcome, choose_devices, names as names_of, note, print_json, tell_depths};
 pub use arguments::{AnimateArguments, Range, range};
+pub use names::Names;
 use report::Report;
 use sink::Sink;
 use source::Source;

@@ -2,16 +2,18 @@
 
 mod nrrd;
 mod raw;
+mod slices;
 mod vdb;
 mod vti;
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::DVec3;
 
 use super::{CellValue, Volume};
 use crate::error::{Error, Result};
+use crate::image::{Display, ImageFile, ImageFormat};
 use crate::output::{Output, Sink, TextFile};
 use crate::shown;
 
@@ -28,6 +30,11 @@ pub enum VolumeFormat {
     Nrrd,
     /// `.vti`, VTK image data: the cell data `emission`, float32 RGB, dense.
     Vti,
+    /// `.exr`, the layers side by side in an image, for engines without volumes; a JSON beside it says how.
+    Slices {
+        /// Whether values are halves.
+        half: bool,
+    },
     /// `.raw`, float32 RGB, x fastest, then y, then z, dense; a JSON beside it says so.
     Raw,
 }
@@ -42,19 +49,20 @@ impl VolumeFormat {
         let ending = ending.map(str::to_ascii_lowercase);
         let format = match ending.as_deref() {
             Some("vdb") => return Ok(Self::Vdb { half }),
+            Some("exr") => return Ok(Self::Slices { half }),
             Some("nrrd") => Self::Nrrd,
             Some("vti") => Self::Vti,
             Some("raw") => Self::Raw,
             _ => {
                 let name = shown(&path.display().to_string());
                 return Err(Error::Unsupported(format!(
-                    "{name}: a volume is a .vdb, .nrrd, .vti or .raw"
+                    "{name}: a volume is a .vdb, .nrrd, .vti, .exr (of layers side by side) or .raw"
                 )));
             }
         };
         match half {
             true => Err(Error::Unsupported(
-                "half floats are of .vdb files: write one, or leave them out".to_owned(),
+                "half floats are of .vdb and .exr files: write one, or leave them out".to_owned(),
             )),
             false => Ok(format),
         }
@@ -65,26 +73,39 @@ impl VolumeFormat {
 #[derive(Debug)]
 pub struct VolumeFile {
     format: VolumeFormat,
-    output: Output,
-    /// What stands beside it: its name, and the file.
-    beside: Option<(PathBuf, TextFile)>,
+    target: Target,
+    /// What stands beside it.
+    beside: Option<TextFile>,
+}
+
+#[derive(Debug)]
+enum Target {
+    Bytes(Output),
+    Image(ImageFile),
 }
 
 impl VolumeFile {
-    /// Makes sure that `path`, and what stands beside it, can be written, and changes nothing yet.
+    /// Makes sure that `path`, and the JSON that may stand beside it, can be written, and changes nothing yet.
     ///
     /// # Errors
     /// [`Error::Output`] if it is a folder, its folder is missing, or it cannot be written; [`Error::Unsupported`] as
     /// [`VolumeFormat::of`].
     pub fn create(path: &Path, half: bool) -> Result<Self> {
         let format = VolumeFormat::of(path, half)?;
-        let json = path.with_extension("json");
-        Ok(Self {
-            format,
-            output: Output::create(path)?,
-            beside: match format {
-                VolumeFormat::Raw => Some((json.clone(), TextFile::create(json)?)),
-                _ => None,
+        let beside = || TextFile::create(path.with_extension("json")).map(Some);
+        Ok(match format {
+            VolumeFormat::Slices { .. } => Self {
+                format,
+                target: Target::Image(ImageFile::create_as(path, ImageFormat::Exr)?),
+                beside: beside()?,
+            },
+            _ => Self {
+                format,
+                target: Target::Bytes(Output::create(path)?),
+                beside: match format {
+                    VolumeFormat::Raw => beside()?,
+                    _ => None,
+                },
             },
         })
     }
@@ -92,26 +113,37 @@ impl VolumeFile {
     /// Writes all, and puts the file in its place. `notes`, names and values, go into what the format has for them.
     ///
     /// # Errors
-    /// [`Error::Output`] if it cannot be written; nothing is left behind then.
+    /// [`Error::Output`] if it cannot be written; nothing is left behind then. [`Error::Unsupported`] for an image of
+    /// layers with more than 32768 pixels along an edge; [`Error::OutOfMemory`] for one that does not fit.
     pub fn write(self, volume: &Volume, notes: &[(String, String)]) -> Result<()> {
         let notes: Vec<_> = facts(volume).into_iter().chain(notes.to_vec()).collect();
-        let format = self.format;
-        self.output.write_with(|sink| match format {
-            VolumeFormat::Vdb { half } => vdb::write(sink, volume, half, &notes),
-            VolumeFormat::Nrrd => nrrd::write(sink, volume, &notes),
-            VolumeFormat::Vti => vti::write(sink, volume, &notes),
-            VolumeFormat::Raw => write_dense(sink, volume),
-        })?;
+        match (self.target, self.format) {
+            (Target::Image(file), format) => {
+                let display = Display {
+                    bits: Some(if format == (VolumeFormat::Slices { half: true }) {
+                        16
+                    } else {
+                        32
+                    }),
+                    ..Display::default()
+                };
+                file.write(&slices::image(volume)?, &display)?;
+            }
+            (Target::Bytes(output), format) => output.write_with(|sink| match format {
+                VolumeFormat::Vdb { half } => vdb::write(sink, volume, half, &notes),
+                VolumeFormat::Nrrd => nrrd::write(sink, volume, &notes),
+                VolumeFormat::Vti => vti::write(sink, volume, &notes),
+                VolumeFormat::Raw | VolumeFormat::Slices { .. } => write_dense(sink, volume),
+            })?,
+        }
+        let tiles = match self.format {
+            VolumeFormat::Slices { .. } => Some(slices::layout(volume.grid())),
+            _ => None,
+        };
         match self.beside {
-            Some((_, file)) => file.write(&raw::json(volume, &notes)),
+            Some(file) => file.write(&raw::json(volume, tiles, &notes)),
             None => Ok(()),
         }
-    }
-
-    /// Returns the name of what stands beside it.
-    #[must_use]
-    pub fn beside(&self) -> Option<&Path> {
-        self.beside.as_ref().map(|(path, _)| path.as_path())
     }
 }
 

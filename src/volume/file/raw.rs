@@ -12,7 +12,7 @@ struct Sheet<'a> {
     cells: [u32; 3],
     /// Which of them lie side by side in the file.
     order: &'static str,
-    channels: [&'static str; 3],
+    channels: &'static [&'static str],
     #[serde(rename = "type")]
     kind: &'static str,
     /// World space.
@@ -21,22 +21,39 @@ struct Sheet<'a> {
     /// Edge, world units.
     cell: f64,
     greatest: f32,
+    /// Layers side by side, and below each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    layers: Option<[u32; 2]>,
     #[serde(flatten)]
     notes: BTreeMap<&'a str, &'a str>,
 }
 
-pub(super) fn json(volume: &Volume, notes: &[(String, String)]) -> String {
+pub(super) fn json(
+    volume: &Volume,
+    layers: Option<[u32; 2]>,
+    notes: &[(String, String)],
+) -> String {
     let grid = volume.grid();
     let [low, high] = grid.bounds();
     let sheet = Sheet {
         cells: grid.cells(),
-        order: "x fastest, then y, then z",
-        channels: ["red", "green", "blue"],
-        kind: "float32, little-endian",
+        order: match layers {
+            Some(_) => "a layer of x and y for each z, the first on the top left",
+            None => "x fastest, then y, then z",
+        },
+        channels: match layers {
+            Some(_) => &["red", "green", "blue", "alpha: the largest of them"],
+            None => &["red", "green", "blue"],
+        },
+        kind: match layers {
+            Some(_) => "OpenEXR",
+            None => "float32, little-endian",
+        },
         low: low.to_array(),
         high: high.to_array(),
         cell: grid.cell(),
         greatest: volume.greatest(),
+        layers,
         notes: notes
             .iter()
             .map(|(name, value)| (name.as_str(), value.as_str()))

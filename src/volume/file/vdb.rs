@@ -76,10 +76,7 @@ pub(super) fn write(
     half: bool,
     notes: &[(String, String)],
 ) -> io::Result<()> {
-    let mut leaves: Vec<Leaf<'_>> = volume
-        .bricks()
-        .map(|([z, y, x], it)| ([x, y, z], it))
-        .collect();
+    let mut leaves: Vec<Leaf<'_>> = volume.bricks().collect();
     // As the trees have them: by their upper node's place, x first, then by their lower's.
     leaves.sort_by_key(|(place, _)| (child(*place, LOWER, UPPER), child(*place, 0, LOWER)));
     let mut to = Writer { sink, half };
