@@ -170,7 +170,12 @@ impl Writer<'_> {
     }
 
     fn metadata(&mut self, part: Part, notes: &[(String, String)]) -> io::Result<()> {
-        let own = [("class", "fog volume"), ("name", part.name())];
+        // NanoVDB takes no fog but of single numbers.
+        let class = match part {
+            Part::Density => "fog volume",
+            Part::Color => "unknown",
+        };
+        let own = [("class", class), ("name", part.name())];
         let notes = notes
             .iter()
             .map(|(name, value)| (name.as_str(), value.as_str()));
