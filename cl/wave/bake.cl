@@ -3,8 +3,16 @@
 #include "../view.h"
 #include "radiance.h"
 
+#if LANES == 1
+#define LOAD_LANES(from) (*(from))
+#define STORE_LANES(value, to) (*(to) = (value))
+#else
+#define LOAD_LANES(from) JOIN(vload, LANES)(0, from)
+#define STORE_LANES(value, to) JOIN(vstore, LANES)(value, 0, to)
+#endif
+
 void add_lanes(__global float *const restrict to, const floatv value) {
-    JOIN(vstore, LANES)(JOIN(vload, LANES)(0, to) + value, 0, to);
+    STORE_LANES(LOAD_LANES(to) + value, to);
 }
 
 #include "cells.h" // sphere_add_to_row and so on
@@ -35,7 +43,7 @@ __kernel void bake(const Cells cells, const uint first_row, const uint end_row, 
     const Sources sources = {KINDS(SOURCE_VALUE) rows};
     for (uint channel = 0; channel < 3; ++channel)
         for (uint x = 0; x < cells.stride; x += LANES)
-            JOIN(vstore, LANES)(splat(0.0f), 0, values + row * cells.stride + channel * cells.plane + x);
+            STORE_LANES(splat(0.0f), values + row * cells.stride + channel * cells.plane + x);
     const float per_part = 1.0f / (float)cells.parts;
     for (uint part = 0; part < cells.parts * cells.parts; ++part) {
         const float y = per_part * ((float)(part % cells.parts) + 0.5f),

@@ -13,6 +13,8 @@ INLINE void KIND_add_to_row(const Cells *const cells, const Ray *const ray, cons
             const floatv s = per_row * (cell + per_part * ((float)part + 0.5f));
             light += KIND_field(&path, s);
         }
+        if (!any_lane(light != 0.0f)) // beyond its reach
+            continue;
         add_lanes(row + x, emission.x * light);
         add_lanes(row + x + cells->plane, emission.y * light);
         add_lanes(row + x + 2 * cells->plane, emission.z * light);

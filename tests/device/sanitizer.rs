@@ -2,6 +2,8 @@
 //! every access. On any other device it is one more test, of its own lane width.
 #![allow(unsafe_code)] // hosts call OpenCL
 
+use std::ops::ControlFlow;
+
 use crate::common;
 use crate::common::host::Host;
 use energywave::image::{Bloom, DepthAlong};
@@ -11,6 +13,7 @@ use energywave::scene::{
     Particles, PointList, Profile,
 };
 use energywave::verify::built_in_rays;
+use energywave::volume::{CellValue, Grid};
 use energywave::{HostDepth, HostDepthMemory, RadianceImage, Renderer, RendererOptions, Scene};
 use glam::DVec3;
 use opencl3::memory::{
@@ -165,6 +168,10 @@ fn every_kernel_runs_on_every_lane_width() {
                     f64::INFINITY
                 }
             }));
+            let grid = Grid::new(DVec3::ZERO, DVec3::new(1.9, 0.5, 1.1), 19).unwrap();
+            let nothing = &mut |_: f32| ControlFlow::Continue(());
+            let volume = renderer.bake(&hidden, grid, CellValue::Mean(2), nothing);
+            assert!(volume.unwrap().greatest().is_finite());
             let image = renderer.render(&scene).unwrap();
             assert!(image.as_slice().iter().all(|value| value.is_finite()));
             let traced = renderer.integrate(&scene, &rays).unwrap();

@@ -8,7 +8,7 @@ use std::process::Command;
 use energywave::glam::DVec3;
 use energywave::scene::{Sphere, Torus};
 use energywave::volume::{CellValue, Grid, Volume};
-use energywave::{Device, Renderer, Scene};
+use energywave::{Device, ErrorKind, Renderer, RendererOptions, Scene};
 
 use crate::bad_scenes::CAMERA;
 use crate::common;
@@ -46,21 +46,42 @@ fn difference(one: &Volume, other: &Volume) -> f64 {
 fn a_volume_is_that_of_the_reference_whatever_its_size_and_its_sources() {
     let mut scene = common::full_scene(8, 8);
     scene.integration.softening = 0.02;
-    let mut device = Renderer::new(&common::device()).unwrap();
+    let mut devices = [
+        Renderer::new(&common::device()).unwrap(),
+        common::renderer(1, ""),
+    ];
     let mut reference = Renderer::new(&Device::reference()).unwrap();
     let grid = Grid::new(DVec3::new(0.2, -0.1, 0.3), DVec3::new(2.6, 1.9, 1.1), 37).unwrap();
     for value in [CellValue::Center, CellValue::Mean(2)] {
-        let found = bake(&mut device, &scene, grid, value);
         let expected = bake(&mut reference, &scene, grid, value);
-        let error = difference(&found, &expected);
-        println!("{value:?}: {error:.1e}");
-        assert!(error < ERROR, "{value:?}: {error}");
+        for device in &mut devices {
+            let found = bake(device, &scene, grid, value);
+            let error = difference(&found, &expected);
+            println!("{value:?}: {error:.1e}");
+            assert!(error < ERROR, "{value:?}: {error}");
+        }
         // A scene that is a little brighter is another.
         scene.spheres[0].coefficient *= 1.01;
-        let other = bake(&mut device, &scene, grid, value);
+        let other = bake(&mut devices[0], &scene, grid, value);
         scene.spheres[0].coefficient /= 1.01;
         assert!(difference(&other, &expected) > ERROR);
     }
+}
+
+#[test]
+fn a_device_that_samples_wrong_is_refused() {
+    let scene = Scene::from_toml(&format!("{CAMERA}{RING}")).unwrap();
+    let grid = Grid::new(DVec3::ZERO, DVec3::ONE, 8).unwrap();
+    let outcome = |spoil: &str| {
+        let options = common::compiled_with(&RendererOptions::default(), spoil);
+        let mut renderer = Renderer::with_options(&common::device(), &options).unwrap();
+        let nothing = &mut |_: f32| std::ops::ControlFlow::Continue(());
+        renderer.bake(&scene, grid, CellValue::Center, nothing)
+    };
+    let error = outcome("-Dtwice_inverse_sqrt(x)=(2.02f/sqrt(x))").unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::SelfTest, "{error}");
+    assert!(error.to_string().contains("cell"), "{error}");
+    assert!(outcome("").is_ok());
 }
 
 #[test]
