@@ -67,8 +67,8 @@ fn warn_of_thin_cores(scene: &Scene, volume: &Volume) {
     let cell = volume.grid().cell();
     if volume.value() == CellValue::Center && scene.is_thinner_than(cell) {
         warn(&format!(
-            "cells are {cell:.4} wide, and some core is thinner: it comes out as beads; more --cells help, or --mean 4, \
-             which takes longer"
+            "cells are {cell:.4} wide, and some core is thinner: it comes out as beads; more --cells help, or \
+             --mean 4, which takes longer"
         ));
     }
 }

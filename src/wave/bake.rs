@@ -8,10 +8,8 @@ use super::Wave;
 use super::kernels::{Rays, Task, Variant};
 use super::pack::layout::{Cells, Launch};
 use super::pack::{self, Anchor, Pixel};
-use super::self_test::STRIDE;
 use crate::error::{Error, Result};
 use crate::opencl::{Argument, Compute, DeviceBuffer, FilmFormat, run_time};
-use crate::reference::Emitter;
 use crate::scene::{Reduction, Scene};
 use crate::volume::{BRICK, CellValue, Grid, Volume};
 
@@ -23,9 +21,6 @@ const MOST_SAMPLES: u64 = 1 << 28;
 
 /// Work-items in a group; they share nothing.
 const GROUP: usize = 16;
-
-/// The relative error that a cell may have in the self-test.
-const LIMIT: f64 = 1e-3;
 
 impl Wave {
     /// Samples the emission of a valid scene in the cells of a grid. `progress` hears the share that is done.
@@ -139,36 +134,6 @@ impl Wave {
             run_time(compute, &event)?;
         }
         Ok(())
-    }
-
-    /// Compares some cells of a scene with the reference; returns what is wrong.
-    pub(super) fn wrong_cells(
-        &mut self,
-        compute: &Compute,
-        scene: &Scene,
-    ) -> Result<Option<String>> {
-        let grid = Grid::new(DVec3::new(0.1, -0.2, 0.15), DVec3::new(2.0, 1.4, 1.1), 21)?;
-        let value = CellValue::Mean(2);
-        let nothing = &mut |_: f32| ControlFlow::Continue(());
-        let volume = self.bake(compute, scene, (grid, value), nothing)?;
-        let emitter = Emitter::new(scene);
-        let [columns, rows, layers] = grid.cells();
-        for number in (0..columns * rows * layers).step_by(STRIDE) {
-            let cell = [
-                number % columns,
-                number / columns % rows,
-                number / columns / rows,
-            ];
-            let expected = emitter.in_cell(&grid, value, cell);
-            let found = DVec3::from(volume.at(cell).map(f64::from));
-            let error = (found - expected).abs().max_element();
-            let is_right = error <= LIMIT * expected.max_element(); // which no NaN is
-            if !is_right {
-                let message = format!("cell {cell:?} of the test is {found}, not {expected:.6}");
-                return Ok(Some(message));
-            }
-        }
-        Ok(None)
     }
 }
 

@@ -11,19 +11,23 @@ use super::kernels::{Rays, Reduced, Task, Variant};
 use crate::error::{Error, Result};
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{Compute, Film, FilmFormat, Pixel, Program};
-use crate::reference::Tracer;
+use crate::reference::{Emitter, Tracer};
 use crate::scene::kinds::for_each_kind;
 use crate::scene::{
     Absorption, Antialias, Camera, Decay, Integration, Measure, Method, Profile, Reduction,
     Sampling, Scene, SourceKind,
 };
 use crate::threads;
+use crate::volume::{CellValue, Grid};
 
 /// The step from one compared pixel to the next: a number that shares no divisor with the width and the lanes.
-pub(super) const STRIDE: usize = 97;
+const STRIDE: usize = 97;
 
 /// The relative error that a pixel may have even if the tolerance is smaller: what float32 and half floats lose.
 const LEAST_LIMIT: f64 = 1e-3;
+
+/// The relative error that a cell may have.
+const CELL_LIMIT: f64 = 1e-3;
 
 /// That of a pixel next to a core, a mean over its square: few pixels see much of a specimen, its ends and bends.
 const MEAN_LIMIT: f64 = 1e-1;
@@ -112,6 +116,36 @@ impl Wave {
                 )
             })
         }))
+    }
+
+    /// Compares some cells of a scene with the reference; returns what is wrong.
+    pub(super) fn wrong_cells(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+    ) -> Result<Option<String>> {
+        let grid = Grid::new(DVec3::new(0.1, -0.2, 0.15), DVec3::new(2.0, 1.4, 1.1), 21)?;
+        let value = CellValue::Mean(2);
+        let nothing = &mut |_: f32| ControlFlow::Continue(());
+        let volume = self.bake(compute, scene, (grid, value), nothing)?;
+        let emitter = Emitter::new(scene);
+        let [columns, rows, layers] = grid.cells();
+        for number in (0..columns * rows * layers).step_by(STRIDE) {
+            let cell = [
+                number % columns,
+                number / columns % rows,
+                number / columns / rows,
+            ];
+            let expected = emitter.in_cell(&grid, value, cell);
+            let found = DVec3::from(volume.at(cell).map(f64::from));
+            let error = (found - expected).abs().max_element();
+            let is_right = error <= CELL_LIMIT * expected.max_element(); // which no NaN is
+            if !is_right {
+                let message = format!("cell {cell:?} of the test is {found}, not {expected:.6}");
+                return Ok(Some(message));
+            }
+        }
+        Ok(None)
     }
 
     /// Draws the pixels of the known scene by the very kernels of a task.
