@@ -21,9 +21,10 @@ pub struct BakeArguments {
     /// Cells along the longest edge of the box, at most 2048; they are cubes
     #[arg(long, value_name = "N", default_value_t = 128)]
     pub cells: u32,
-    /// Box that is sampled: its middle and its edges, world units, such as 0,0,0 4,2,2 [default: around all light, which
-    /// must have a reach]
-    #[arg(long = "box", num_args = 2, value_names = ["MIDDLE", "EDGES"], value_parser = point, allow_hyphen_values = true)]
+    /// Box that is sampled: its middle and its edges, world units, such as 0,0,0 4,2,2 [default: around all light,
+    /// which must have a reach]
+    #[arg(long = "box", num_args = 2, value_names = ["MIDDLE", "EDGES"], value_parser = point)]
+    #[arg(allow_hyphen_values = true)]
     pub bounds: Option<Vec<DVec3>>,
     /// Give each cell the mean of NxNxN places in it; 1: what its middle gives off [default: 1; 4 where a core without
     /// radius gives off light without end]

@@ -27,8 +27,8 @@ impl Scene {
         }
     }
 
-    /// Returns whether any core is thinner than a cell with such an edge, world units: the middles of cells then meet it
-    /// by chance.
+    /// Returns whether any core is thinner than a cell with such an edge, world units: the middles of cells then meet
+    /// it by chance.
     #[must_use]
     pub fn is_thinner_than(&self, cell: f64) -> bool {
         let softening = self.integration.softening;
@@ -105,9 +105,9 @@ pub struct BakeError {
 
 impl Renderer {
     /// Measures how exactly a volume shows its scene: along rays of the scene's camera, at most 128 across, as far as
-    /// they are in the box, light without decay or absorption is compared with that of the cells, interpolated linearly.
-    /// The error is that of the channel that is farthest off, relative to the brightest channel of the ray. `None`: no
-    /// ray meets light in the box.
+    /// they are in the box, light without decay or absorption is compared with that of the cells, interpolated
+    /// linearly. The error is that of the channel that is farthest off, relative to the brightest channel of the ray.
+    /// `None`: no ray meets light in the box.
     ///
     /// # Errors
     /// As [`Renderer::integrate`].

@@ -10,8 +10,8 @@ use super::Volume;
 const POINTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 impl Volume {
-    /// Returns the emission at a point of the world, linear RGB: that of the eight cells around it, interpolated. Beyond
-    /// the middles of the outermost cells it is theirs; outside the box there is none.
+    /// Returns the emission at a point of the world, linear RGB: that of the eight cells around it, interpolated.
+    /// Beyond the middles of the outermost cells it is theirs; outside the box there is none.
     #[must_use]
     pub fn emission(&self, point: DVec3) -> DVec3 {
         let grid = self.grid();

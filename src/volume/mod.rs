@@ -25,8 +25,8 @@ pub const BRICK: u32 = 8;
 pub enum CellValue {
     /// The emission at the middle of the cell.
     Center,
-    /// The mean of the emission in the middles of the cell's pieces, so many along each edge. Next to a core where light
-    /// has no end, as without a radius, no distance is taken below half the edge of a piece.
+    /// The mean of the emission in the middles of the cell's pieces, so many along each edge. Next to a core where
+    /// light has no end, as without a radius, no distance is taken below half the edge of a piece.
     Mean(u32),
 }
 

@@ -93,8 +93,8 @@ pub(super) fn write(
     Ok(())
 }
 
-/// Returns the number of the child of a node, of `1 << node` along an edge, in which a leaf is; a child has `1 << below`
-/// leaves along an edge.
+/// Returns the number of the child of a node, of `1 << node` along an edge, in which a leaf is; a child has `1 <<
+/// below` leaves along an edge.
 fn child(place: [u32; 3], below: u32, node: u32) -> u32 {
     let [x, y, z] = place.map(|it| it >> below & ((1 << node) - 1));
     x << (2 * node) | y << node | z
