@@ -11,6 +11,7 @@ mod layers;
 mod moments;
 mod one;
 mod over;
+mod rays;
 mod referenced;
 mod several;
 mod shares;
@@ -25,11 +26,11 @@ pub use device::{Device, Devices};
 pub use host_depth::HostDepth;
 
 use crate::cost::FrameCost;
-use crate::error::{Error, Result, SceneError};
+use crate::error::{Error, Result};
 use crate::image::{Bloom, RadianceImage, kept_image, spread_light};
 use crate::opencl::{MappedFilm, RendererOptions};
-use crate::reference::{self, Tracer};
-use crate::scene::{CheckedSources, DepthLayers, Ray, Scene};
+use crate::reference;
+use crate::scene::{CheckedSources, DepthLayers, Scene};
 pub use bake::BakeError;
 use device::Backend;
 use one::{DeviceRenderer, Rows};
@@ -326,38 +327,6 @@ impl Renderer {
             RendererBackend::Several(renderer) => renderer.cost(),
             RendererBackend::Reference { cost, .. } => *cost,
         }
-    }
-
-    /// Integrates along single rays: linear RGB, over the parameter or the length of each ray as the scene's measure
-    /// says. The scene's camera, image and depth play no part. With [`Jittered`](crate::scene::Method::Jittered) a
-    /// ray's place in the list takes the place of its pixel's number.
-    ///
-    /// # Errors
-    /// As [`Renderer::render`]; [`Error::Scene`] also for a ray that [`Ray::fault`] refuses; [`Error::Unsupported`] for
-    /// a scene with particles.
-    pub fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<[f64; 3]>> {
-        self.check(scene)?;
-        for (index, ray) in rays.iter().enumerate() {
-            if let Some(fault) = ray.fault() {
-                return Err(SceneError::value(format!("ray {index}"), fault).into());
-            }
-        }
-        scene.check_rays_alone()?;
-        let pixels = match &mut self.backend {
-            RendererBackend::OpenCl(renderer) => renderer.integrate(scene, rays)?,
-            RendererBackend::Several(renderer) => renderer.integrate(scene, rays)?,
-            RendererBackend::Reference { .. } => {
-                let tracer = Tracer::new(scene, scene.integration.method);
-                let radiance = |(ray, number)| tracer.radiance(ray, 1.0, number).to_array();
-                return Ok(rays.iter().zip(0..).map(radiance).collect());
-            }
-        };
-        let measure = |ray: &Ray| scene.integration.scale(ray.span.length());
-        let colors = pixels.iter().zip(rays).map(|(pixel, ray)| {
-            let [red, green, blue, _] = *pixel;
-            [red, green, blue].map(|light| measure(ray) * f64::from(light))
-        });
-        Ok(colors.collect())
     }
 
     /// Checks a scene; its sources only if they changed.
