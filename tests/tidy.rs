@@ -60,11 +60,12 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 13] = [
+const LAYERS: [(&str, &[&str]); 14] = [
     ("image", &[]),
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
     ("glow", &["image", "opencl", "scene"]),
+    ("mesh", &["image", "opencl", "scene"]),
     ("metaball", &["image", "opencl", "scene"]),
     ("scene", &["image"]),
     ("particle", &["scene"]),
@@ -78,6 +79,7 @@ const LAYERS: [(&str, &[&str]); 13] = [
             "opencl",
             "bloom",
             "glow",
+            "mesh",
             "metaball",
             "particle",
             "scene",
@@ -103,6 +105,7 @@ const LAYERS: [(&str, &[&str]); 13] = [
             "opencl",
             "bloom",
             "glow",
+            "mesh",
             "metaball",
             "scene",
             "reference",
@@ -222,6 +225,7 @@ fn every_file_of_cl_is_embedded_once() {
         "src/wave/kinds.rs",
         "src/bloom/sources.rs",
         "src/glow/sources.rs",
+        "src/mesh/sources.rs",
         "src/metaball/sources.rs",
         "src/opencl/source.rs",
     ];
