@@ -249,22 +249,22 @@ const BAD: &[(&str, &str, &str)] = &[
     ),
     (
         "TRIANGLE scale = 0\n",
-        "7:10: mesh[0].scale",
+        "7:9: mesh[0].scale",
         "must be positive",
     ),
     (
         "TRIANGLE scale = -1\n",
-        "7:10: mesh[0].scale",
+        "7:9: mesh[0].scale",
         "must be positive",
     ),
     (
         "TRIANGLE translate = [1e9, 0, 0]\n",
-        "7:14: mesh[0].translate",
+        "7:13: mesh[0].translate",
         "beyond 1e9",
     ),
     (
         "TRIANGLE albedo = [0.5, 1.5, 0]\n",
-        "7:11: mesh[0].albedo",
+        "7:10: mesh[0].albedo",
         "0 to 1",
     ),
     (
