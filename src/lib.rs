@@ -54,6 +54,7 @@ pub mod image;
 #[doc(hidden)]
 pub mod internals;
 mod memory;
+mod mesh;
 mod metaball;
 #[cfg(feature = "files")]
 mod nearest;

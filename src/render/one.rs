@@ -1,13 +1,15 @@
 //! Renders scenes on one OpenCL device: plans a frame, draws it in bands that fit into the film, and reads them back.
 
 use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::engines::{Engines, FramePlan};
 use crate::bloom::Spreader;
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
-use crate::image::{Bloom, ImageSize};
+use crate::image::{Bloom, DepthImage, ImageSize};
+use crate::mesh::Meshes;
 #[cfg(feature = "papers")]
 use crate::metaball::SurfaceCounts;
 use crate::metaball::Surfaces;
@@ -28,6 +30,7 @@ pub(crate) struct DeviceRenderer {
     pub(super) adder: Adder,
     /// Where parts of a host's frame are drawn.
     pub(super) part: Film,
+    pub(super) meshes: Meshes,
     /// Of the bloom of the last frame.
     pub(super) bloom_cost: FrameCost,
     pub(super) film: Film,
@@ -78,6 +81,7 @@ impl DeviceRenderer {
             surfaces: Surfaces::new(options),
             adder: Adder::new(options),
             part: Film::new(),
+            meshes: Meshes::new(options),
             bloom_cost: FrameCost::default(),
             film: Film::new(),
             host,
@@ -118,14 +122,39 @@ impl DeviceRenderer {
         self.surfaces.counted()
     }
 
-    /// Finds the surfaces of a valid scene, and returns what that cost, too.
-    pub(crate) fn see_surfaces(&mut self, scene: &Scene) -> Result<(SeenSurfaces, FrameCost)> {
+    /// Opens the queue on which surfaces are found where the renderer's own may wait for a host.
+    fn open_beside(&mut self) -> Result<()> {
         if self.host.is_some() && self.beside.is_none() {
             self.beside = Some(self.compute.sibling()?);
         }
+        Ok(())
+    }
+
+    /// Finds the surfaces of a valid scene, and returns what that cost, too.
+    pub(crate) fn see_surfaces(&mut self, scene: &Scene) -> Result<(SeenSurfaces, FrameCost)> {
+        self.open_beside()?;
         let compute = self.beside.as_ref().unwrap_or(&self.compute);
         let seen = self.surfaces.draw(compute, scene, scene.rays_across())?;
         Ok((seen, self.surfaces.cost()))
+    }
+
+    /// Finds the meshes of a valid scene along its rays, and returns what that cost, too.
+    pub(crate) fn trace_meshes(&mut self, scene: &Scene) -> Result<(DepthImage, FrameCost)> {
+        self.open_beside()?;
+        let compute = self.beside.as_ref().unwrap_or(&self.compute);
+        let depth = self.meshes.trace(compute, scene, scene.rays_across())?;
+        Ok((depth, self.meshes.cost()))
+    }
+
+    /// Returns the light of the meshes that were traced last, up to final lengths, and what that cost.
+    pub(crate) fn shade_meshes(
+        &mut self,
+        scene: &Scene,
+        ends: &DepthImage,
+    ) -> Result<(Arc<Vec<f32>>, FrameCost)> {
+        let compute = self.beside.as_ref().unwrap_or(&self.compute);
+        let light = self.meshes.shade(compute, scene, ends)?;
+        Ok((light, self.meshes.cost()))
     }
 
     /// Returns what [`Wave::grain_rows`] says.

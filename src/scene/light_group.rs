@@ -43,9 +43,11 @@ macro_rules! define_light_groups {
                 (scene.image, scene.decay, scene.absorption) = (self.image, self.decay, self.absorption);
                 (scene.integration, scene.display) = (self.integration, self.display.clone());
                 scene.depth = self.depth.clone();
+                scene.meshes = self.meshes.clone();
                 scene.metaballs = self.metaballs.clone();
                 if group.is_some() {
                     scene.metaballs.iter_mut().for_each(|surface| surface.color = DVec3::ZERO);
+                    scene.meshes.iter_mut().for_each(|mesh| mesh.albedo = DVec3::ZERO);
                 }
                 scene.colliders = self.colliders.clone();
                 match group {
@@ -81,7 +83,7 @@ impl Scene {
     /// Returns whether there is light of no group: of sources, of particles, or of surfaces.
     #[must_use]
     pub fn has_ungrouped_light(&self) -> bool {
-        let mut has = !self.metaballs.is_empty() || self.has_particles();
+        let mut has = !self.metaballs.is_empty() || !self.meshes.is_empty() || self.has_particles();
         has |= self.colliders.iter().any(|collider| collider.visible);
         self.for_each_light_group(&mut |group| has |= group.is_none());
         has

@@ -35,6 +35,7 @@ pub(crate) mod kinds;
 mod light_element;
 mod light_group;
 mod list;
+mod mesh;
 mod metaballs;
 mod particles;
 mod points;
@@ -67,6 +68,7 @@ pub use integration::{
 };
 pub use light_element::LightElement;
 pub use list::List;
+pub use mesh::{Mesh, TriangleList};
 pub(crate) use metaballs::{AMBIENT, LAMP};
 pub use metaballs::{MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs};
 pub use particles::Particles;
@@ -116,6 +118,8 @@ macro_rules! define_scene {
             pub waves: List<EmittedWave>,
             /// What they hit.
             pub colliders: List<Collider>,
+            /// Triangles, which hide the light behind them too.
+            pub meshes: List<Mesh>,
             /// Surfaces, which hide the light behind them too.
             pub metaballs: List<Metaballs>,
             /// Particles that shine.
@@ -140,6 +144,7 @@ macro_rules! define_scene {
                     simulation: None,
                     waves: List::new(),
                     colliders: List::new(),
+                    meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
                     light_elements: List::new(),

@@ -251,15 +251,15 @@ fn read_again(scene: &Scene, folder: &Path) -> Vec<(&'static str, Scene)> {
 #[test]
 fn every_scene_of_the_repository_is_read_as_it_was_written() {
     let folder = tempfile::tempdir().unwrap();
-    let mut with_depth = 0;
+    let depths = DepthImage::open("tests/data/tetrahedra.exr", DepthAlong::Ray).unwrap();
     for path in common::scene_files() {
-        let scene = Scene::from_file(&path).unwrap();
-        with_depth += usize::from(scene.depth.is_some());
+        let mut scene = Scene::from_file(&path).unwrap();
+        // Those of the tetrahedra have their depths, too.
+        scene.depth = (!scene.meshes.is_empty()).then(|| depths.clone());
         for (what, read) in read_again(&scene, folder.path()) {
             assert_eq!(read, scene, "{} as {what}", path.display());
         }
     }
-    assert!(with_depth > 0, "no scene has a depth image");
 }
 
 #[test]

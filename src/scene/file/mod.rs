@@ -10,6 +10,7 @@ mod integration;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
+mod mesh;
 mod metaballs;
 mod moving;
 mod numbers;
@@ -47,6 +48,8 @@ use groups::{GroupTable, Groups};
 pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
 pub use integration::MethodKeys;
+pub(super) use mesh::MESH_KEYS;
+use mesh::MeshTable;
 pub(super) use metaballs::METABALLS_KEYS;
 use metaballs::MetaballsTable;
 pub(super) use particles::PARTICLES_KEYS;
@@ -91,6 +94,8 @@ macro_rules! define_scene_file {
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             collider: Vec<ColliderTable>,
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            mesh: Vec<MeshTable>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
             metaballs: Vec<MetaballsTable>,
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             particles: Vec<ParticlesTable>,
@@ -122,6 +127,7 @@ macro_rules! define_scene_file {
                     simulation: self.simulation,
                     waves: std::mem::take(&mut self.wave),
                     colliders: self.colliders(),
+                    meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
                     light_elements: List::new(),
@@ -190,6 +196,7 @@ macro_rules! define_scene_file {
                     simulation: scene.simulation,
                     wave: scene.waves.clone(),
                     collider: scene.colliders.iter().map(ColliderTable::of).collect(),
+                    mesh: scene.meshes.iter().map(MeshTable::of).collect(),
                     metaballs,
                     particles,
                     $($kind: scene.$list.clone(),)*
@@ -206,6 +213,13 @@ for_each_kind!(define_scene_file);
 pub(super) fn raw_fault(text: &str) -> Option<String> {
     let fault = ::toml::from_str::<SceneFile>(text).err()?;
     Some(fault.message().to_owned())
+}
+
+/// Lets tables take what those before them have read.
+fn shared<T>(mut new: Vec<T>, old: &[T], share: fn(&mut T, &T)) -> Vec<T> {
+    let pairs = new.iter_mut().zip(old);
+    pairs.for_each(|(new, old)| share(new, old));
+    new
 }
 
 fn is_empty<T>(list: &List<T>) -> bool {
@@ -231,21 +245,14 @@ impl SceneFile {
         self.simulation = other.simulation;
         self.wave = other.wave;
         self.collider = other.collider;
-        let mut metaballs = other.metaballs;
-        for (new, old) in metaballs.iter_mut().zip(&self.metaballs) {
-            new.share(old);
-        }
-        self.metaballs = metaballs;
-        let mut particles = other.particles;
-        for (new, old) in particles.iter_mut().zip(&self.particles) {
-            new.share(old);
-        }
-        self.particles = particles;
+        self.mesh = shared(other.mesh, &self.mesh, MeshTable::share);
+        self.metaballs = shared(other.metaballs, &self.metaballs, MetaballsTable::share);
+        self.particles = shared(other.particles, &self.particles, ParticlesTable::share);
     }
 
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
     fn exposure_of_brightest(mut self) -> Option<f64> {
-        if !self.metaballs.is_empty() || !self.particles.is_empty() {
+        if !self.mesh.is_empty() || !self.metaballs.is_empty() || !self.particles.is_empty() {
             return None;
         }
         let mut scene = self.scene();
@@ -271,6 +278,9 @@ impl SceneFile {
         self.check_colliders()?;
         let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
         groups.check(&scene)?;
+        for (index, table) in self.mesh.iter().enumerate() {
+            scene.meshes.push(table.open(index, folder)?);
+        }
         for (index, table) in self.metaballs.iter().enumerate() {
             scene.metaballs.push(table.open(index, folder)?);
         }

@@ -41,7 +41,7 @@ impl AnimatedScene {
         &self.document.motion.text
     }
 
-    /// Returns the files that it names: a depth image, a background, and those of particles.
+    /// Returns the files that it names: a depth image, a background, meshes, and those of particles.
     #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
         let Document { file, motion } = &self.document;
@@ -50,7 +50,9 @@ impl AnimatedScene {
         let lights = file.particles.iter().filter_map(ParticlesTable::file);
         let images = depth.into_iter().chain(file.display.background_file());
         let named = images.chain(surfaces).chain(lights);
-        named.map(|file| motion.folder.join(file)).collect()
+        let named = named.map(|file| motion.folder.join(file));
+        let meshes = file.mesh.iter();
+        named.chain(meshes.flat_map(|mesh| mesh.files(&motion.folder))).collect()
     }
 }
 
