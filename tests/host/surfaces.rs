@@ -6,8 +6,8 @@ use crate::common;
 use crate::common::host::Host;
 use energywave::image::{Bloom, DepthAlong, DepthImage, ImageSize};
 use energywave::scene::{
-    Antialias, Collider, EmittedWave, Lattice, Metaballs, Particles, PointList, Sampling,
-    SimulationSettings,
+    Antialias, Collider, EmittedWave, Lattice, Mesh, Metaballs, Particles, PointList, Sampling,
+    SimulationSettings, TriangleList,
 };
 use energywave::{
     ErrorKind, HostDepth, HostTarget, RadianceImage, Renderer, RendererOptions, Scene,
@@ -46,9 +46,12 @@ fn scene() -> Scene {
     scene
 }
 
-/// The same with a ball that is seen, and particles as light before and behind it.
+/// The same with a mesh and a ball that are seen, and particles as light before and behind them.
 fn crowded() -> Scene {
     let mut scene = scene();
+    let corners = [[0.2, 0.3, -1.2], [1.3, -0.2, -0.4], [0.4, 0.1, 0.8]].map(DVec3::from);
+    let triangle = TriangleList::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+    scene.meshes.push(Mesh::new(triangle));
     let mut ball = Collider::sphere(DVec3::new(-0.9, 0.2, -0.5), 0.45);
     ball.color = DVec3::new(0.5, 0.2, 0.3);
     scene.colliders.push(ball);
