@@ -5,6 +5,7 @@
 
 mod field;
 mod footprint;
+mod irradiance;
 mod particles;
 mod quadrature;
 mod surface;
@@ -16,6 +17,7 @@ use glam::DVec3;
 
 #[doc(hidden)]
 pub use field::{CurveField, Field, Sample, Source, b_spline, sources};
+pub use irradiance::irradiance;
 #[doc(hidden)]
 pub use quadrature::integrate;
 pub(crate) use surface::see_surfaces;

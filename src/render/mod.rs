@@ -5,6 +5,7 @@ mod device;
 mod engines;
 mod host;
 mod host_depth;
+mod irradiance;
 mod layers;
 mod moments;
 mod one;

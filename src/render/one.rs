@@ -8,6 +8,7 @@ use crate::bloom::Spreader;
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
 use crate::image::{Bloom, ImageSize};
+use crate::light::PointLighter;
 #[cfg(feature = "papers")]
 use crate::metaball::SurfaceCounts;
 use crate::metaball::Surfaces;
@@ -24,6 +25,7 @@ pub(crate) struct DeviceRenderer {
     pub(super) engines: Engines,
     pub(super) spreader: Spreader,
     pub(super) surfaces: Surfaces,
+    pub(super) lighter: PointLighter,
     /// Of the bloom of the last frame.
     pub(super) bloom_cost: FrameCost,
     pub(super) film: Film,
@@ -70,6 +72,7 @@ impl DeviceRenderer {
             engines: Engines::new(&compute, options)?,
             spreader: Spreader::new(options),
             surfaces: Surfaces::new(options),
+            lighter: PointLighter::new(options),
             bloom_cost: FrameCost::default(),
             film: Film::new(),
             host,

@@ -22,6 +22,7 @@ mod colors;
 mod depth_layers;
 #[cfg(feature = "files")]
 mod depth_report;
+mod emitter;
 mod exposure;
 mod extent;
 #[cfg(feature = "files")]
@@ -34,6 +35,7 @@ pub mod keys;
 pub(crate) mod kinds;
 mod light_element;
 mod light_group;
+mod lighting;
 mod list;
 mod metaballs;
 mod particles;
@@ -55,10 +57,12 @@ mod warnings;
 use glam::DVec3;
 
 pub use camera::{Camera, CameraMatrices, ClipY};
+pub(crate) use chain::Piece;
 pub use chain::{Dashes, ElectricArc};
 pub(crate) use depth_layers::DepthLayers;
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;
+pub(crate) use emitter::{Emitter, EmitterCore};
 #[cfg(feature = "files")]
 pub use file::{AnimatedScene, MethodKeys, SceneSpan};
 pub use group::{Group, Repeat, Rotation};
@@ -66,6 +70,7 @@ pub use integration::{
     Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
 };
 pub use light_element::LightElement;
+pub use lighting::{Lighting, Sun};
 pub use list::List;
 pub(crate) use metaballs::{AMBIENT, LAMP};
 pub use metaballs::{MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs};
@@ -110,6 +115,8 @@ macro_rules! define_scene {
             /// times as many depths across and down: pixels at the edges of things are then the mean of the light
             /// before each surface.
             pub depth: Option<DepthImage>,
+            /// How surfaces are lit; `None`: meshes by a lamp beside the eye, the waves cast no light.
+            pub lighting: Option<Lighting>,
             /// How waves of particles are simulated; `None`: by the defaults.
             pub simulation: Option<SimulationSettings>,
             /// Waves of particles, which [`crate::particle::Simulation`] moves; their light is drawn.
@@ -137,6 +144,7 @@ macro_rules! define_scene {
                     integration: Integration::default(),
                     display: Display::default(),
                     depth: None,
+                    lighting: None,
                     simulation: None,
                     waves: List::new(),
                     colliders: List::new(),

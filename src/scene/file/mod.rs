@@ -31,6 +31,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::kinds::for_each_kind;
+use super::lighting::read_lighting;
 use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
@@ -82,6 +83,8 @@ macro_rules! define_scene_file {
             display: DisplayTable,
             #[serde(default, skip_serializing_if = "Option::is_none")]
             depth: Option<DepthTable>,
+            #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "read_lighting")]
+            lighting: Option<Lighting>,
             #[serde(default, skip_serializing)]
             time: TimeTable,
             #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -119,6 +122,7 @@ macro_rules! define_scene_file {
                     integration: self.integration.integration(),
                     display: self.display.display(),
                     depth: None,
+                    lighting: self.lighting,
                     simulation: self.simulation,
                     waves: std::mem::take(&mut self.wave),
                     colliders: self.colliders(),
@@ -186,6 +190,7 @@ macro_rules! define_scene_file {
                     integration: IntegrationTable::of(&scene.integration),
                     display,
                     depth,
+                    lighting: scene.lighting,
                     time: TimeTable::default(),
                     simulation: scene.simulation,
                     wave: scene.waves.clone(),
@@ -227,6 +232,7 @@ impl SceneFile {
         self.integration = other.integration;
         self.display = other.display;
         self.depth = other.depth;
+        self.lighting = other.lighting;
         self.time = other.time;
         self.simulation = other.simulation;
         self.wave = other.wave;
