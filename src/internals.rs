@@ -9,6 +9,8 @@ use std::time::Duration;
 pub use crate::bloom::{BloomStep, Spreader};
 pub use crate::glow::pack::STRUCTS as GLOW_STRUCTS;
 pub use crate::light::pack::STRUCTS as LIGHT_STRUCTS;
+pub use crate::mesh::pack::STRUCTS as MESH_STRUCTS;
+pub use crate::mesh::{Tree, UploadedTree};
 pub use crate::metaball::pack::STRUCTS as METABALL_STRUCTS;
 pub use crate::opencl::{
     Argument, Compute, DeviceBuffer, DeviceForm, DeviceStruct, Discovery, Film, FilmFormat,
@@ -16,8 +18,8 @@ pub use crate::opencl::{
     Uploaded, discover, host_depth_definitions,
 };
 pub use crate::reference::{
-    CurveField, Field, Integrand, Sample, Source, SurfaceRay, b_spline, exact, integrate, simpson,
-    sources, surface_rays,
+    CurveField, Field, Integrand, MeshRay, Sample, Source, SurfaceRay, b_spline, exact, integrate,
+    mesh_rays, simpson, sources, surface_rays,
 };
 pub use crate::scene::ViewPlane;
 pub use crate::wave::{Rule, Split, TILE_SHARES, Wave, pack};
@@ -25,6 +27,7 @@ pub use crate::wave::{Rule, Split, TILE_SHARES, Wave, pack};
 use crate::bloom;
 use crate::error::{Error, Result};
 use crate::glow;
+use crate::mesh;
 use crate::metaball;
 use crate::opencl::{RendererOptions, run_time};
 use crate::render::Renderer;
@@ -185,6 +188,16 @@ pub fn see_surfaces(renderer: &mut Renderer, scene: &Scene) -> Result<(Vec<f32>,
     Ok((seen.depth.as_slice().to_vec(), seen.light.to_vec()))
 }
 
+/// Returns what a renderer finds of all surfaces of a scene, meshes too: as [`see_surfaces`] does of metaballs.
+///
+/// # Errors
+/// As [`Renderer::render`].
+pub fn see_all_surfaces(renderer: &mut Renderer, scene: &Scene) -> Result<(Vec<f32>, Vec<f32>)> {
+    scene.validate()?;
+    let seen = renderer.see_all_surfaces(scene)?;
+    Ok((seen.depth.as_slice().to_vec(), seen.light.to_vec()))
+}
+
 /// Builds a text that may include files of `cl/metaball/`, as [`build_text`] does with those of the wave.
 ///
 /// # Errors
@@ -196,6 +209,19 @@ pub fn build_metaball_text(
     options: &RendererOptions,
 ) -> Result<Program> {
     metaball::build_text(compute, name, text, options)
+}
+
+/// Builds a text that may include files of `cl/mesh/`, as [`build_text`] does with those of the wave.
+///
+/// # Errors
+/// As there.
+pub fn build_mesh_text(
+    compute: &Compute,
+    name: &str,
+    text: &str,
+    options: &RendererOptions,
+) -> Result<Program> {
+    mesh::build_text(compute, name, text, options)
 }
 
 /// Builds a text that may include files of `cl/glow/`, as [`build_text`] does with those of the wave.

@@ -55,6 +55,7 @@ pub mod image;
 pub mod internals;
 pub mod light;
 mod memory;
+mod mesh;
 mod metaball;
 #[cfg(feature = "files")]
 mod nearest;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::pack::{CastLight, pack};
+use super::pack::{CastLight, STRUCTS, pack};
 use crate::error::Result;
 use crate::opencl::{Argument, Compute, Uploaded};
 use crate::scene::{Lighting, Scene, SourcesStamp};
@@ -21,8 +21,16 @@ pub(crate) struct Lights {
 #[derive(Debug, PartialEq)]
 struct Known {
     sources: SourcesStamp,
-    lighting: Lighting,
+    lighting: Option<Lighting>,
     origin: DVec3,
+}
+
+/// Returns the sizes of the structs, which every program that includes `cl/light/irradiance.h` is built with.
+pub(crate) fn definitions() -> String {
+    let sizes = STRUCTS.iter();
+    sizes
+        .map(|it| format!(" -D SIZEOF_{}={}", it.name.to_uppercase(), it.size))
+        .collect()
 }
 
 impl Lights {
@@ -36,13 +44,18 @@ impl Lights {
         }
     }
 
-    /// Makes the device's lights those of a valid scene, places relative to `origin`, world space, before the next
-    /// command of the queue begins.
+    /// Makes the device's lights those of a valid scene that is lit so, places relative to `origin`, world space, before
+    /// the next command of the queue begins; without a lighting, none.
     ///
     /// # Errors
     /// As [`Uploaded::upload`].
-    pub(crate) fn upload(&mut self, compute: &Compute, scene: &Scene, origin: DVec3) -> Result<()> {
-        let lighting = scene.lighting.unwrap_or_default();
+    pub(crate) fn upload(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        lighting: Option<Lighting>,
+        origin: DVec3,
+    ) -> Result<()> {
         let known = Some(Known {
             sources: scene.sources_stamp(),
             lighting,
@@ -50,14 +63,13 @@ impl Lights {
         });
         let is_known = self.known == known;
         if !is_known {
-            self.packed = pack(&scene.emitters(), origin);
+            let emitters = lighting.map(|lighting| scene.emitters(&lighting));
+            self.packed = pack(&emitters.unwrap_or_default(), origin);
             self.count = self.packed.len() as u32;
             self.known = known;
         }
-        self.shadow_samples = match lighting.shadows {
-            true => lighting.shadow_samples,
-            false => 0,
-        };
+        let shadows = lighting.filter(|lighting| lighting.shadows);
+        self.shadow_samples = shadows.map_or(0, |lighting| lighting.shadow_samples);
         self.list.upload_unless(is_known, compute, &self.packed)
     }
 

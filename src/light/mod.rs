@@ -6,13 +6,12 @@
 
 mod lights;
 pub(crate) mod pack;
-mod points;
 mod proxies;
-mod self_test;
 mod sources;
 
-pub(crate) use points::PointLighter;
+pub(crate) use lights::{Lights, definitions};
 pub use proxies::{CapsuleLight, proxies};
+pub(crate) use sources::LIGHT_FILES;
 
 use glam::DVec3;
 

@@ -38,7 +38,7 @@ const OF_LINE: u32 = 4;
 pub fn proxies(scene: &Scene) -> Result<Vec<CapsuleLight>> {
     scene.validate()?;
     let mut capsules = Vec::new();
-    for emitter in scene.emitters() {
+    for emitter in scene.emitters(&scene.lighting.unwrap_or_default()) {
         add_capsules(scene, &emitter, &mut capsules);
     }
     Ok(capsules)

@@ -1,21 +1,13 @@
-//! The files of the kernels of light that waves cast.
+//! The files of what waves cast, for kernels that shade surfaces.
 
-use crate::opencl::{SHARED, SourceFile, Sources, embed};
+use crate::opencl::{SourceFile, embed};
 
-const FILES: &[SourceFile<'static>] = embed!(
+/// What finds the light that waves cast: engines of surfaces include it.
+pub(crate) const LIGHT_FILES: &[SourceFile<'static>] = embed!(
     "light/curve.h",
     "light/irradiance.h",
     "light/line.h",
-    "light/points.cl",
     "light/ring.h",
     "light/stretch.h",
     "light/types.h",
 );
-
-/// Returns them, and what all engines share.
-pub(super) fn sources() -> Sources<'static> {
-    Sources {
-        files: SHARED.iter().chain(FILES).copied().collect(),
-        kinds: Vec::new(),
-    }
-}

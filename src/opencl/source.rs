@@ -119,7 +119,8 @@ fn relative_to(includer: &str, included: &str) -> String {
 }
 
 /// Returns the names of a kernel's parameters in a resolved text. `KINDS(SOURCE_PARAMETER)` stands for a list of each
-/// kind that the text defines in `KINDS`, `FILM_PARAMETER` for the film's buffer and its image where there is one.
+/// kind that the text defines in `KINDS`, a macro that ends in `_PARAMETERS` for those that it names, `FILM_PARAMETER`
+/// for the film's buffer and its image where there is one.
 pub(super) fn parameters(text: &str, kernel: &str, has_image: bool) -> Vec<String> {
     let head = format!("{kernel}(");
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -157,10 +158,31 @@ pub(super) fn parameters(text: &str, kernel: &str, has_image: bool) -> Vec<Strin
                     .take(1 + usize::from(has_image));
                 names.extend(film.map(str::to_owned));
             }
+            Some(name) if name.ends_with("_PARAMETERS") => names.extend(defined(text, name)),
             _ => names.extend(last.map(str::to_owned)),
         }
     }
     names
+}
+
+/// Returns the names of the parameters that a text defines as a macro, which may go on over lines.
+fn defined(text: &str, name: &str) -> Vec<String> {
+    let head = format!("#define {name}");
+    let begin = text.find(&head).map(|at| at + head.len());
+    let mut parts = String::new();
+    for line in begin.into_iter().flat_map(|begin| text[begin..].lines()) {
+        let more = line.trim_end().strip_suffix('\\');
+        parts.push_str(more.unwrap_or(line));
+        if more.is_none() {
+            break;
+        }
+    }
+    let last = |part: &str| {
+        part.rsplit([' ', '*'])
+            .find(|word| !word.is_empty())
+            .map(str::to_owned)
+    };
+    parts.split(',').filter_map(last).collect()
 }
 
 /// Returns the kinds of `#define KINDS(X) X(sphere, Sphere, 0) ...`.
@@ -232,6 +254,9 @@ mod tests {
         assert_eq!(names(true), all);
         assert_eq!(names(false).len(), 6);
         assert!(parameters(text, "not_draw", true).is_empty());
+        let text = "#define A_PARAMETERS  \\\n    __global const Box *const restrict boxes, \\\n  const uint size\n\
+                    #define OTHER 1\n__kernel void draw(A_PARAMETERS, const uint last) {\n}\n";
+        assert_eq!(parameters(text, "draw", false), ["boxes", "size", "last"]);
         assert!(parameters(text, "missing", true).is_empty());
     }
 }

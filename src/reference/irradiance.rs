@@ -4,9 +4,10 @@
 
 use glam::DVec3;
 
+use super::mesh::Hiding;
 use super::quadrature::integrate;
 use crate::error::Result;
-use crate::scene::{Emitter, EmitterCore, Scene};
+use crate::scene::{Emitter, EmitterCore, Lighting, Scene};
 
 /// Relative error of an integral.
 const ERROR: f64 = 1e-9;
@@ -29,10 +30,12 @@ struct Seen<'a> {
     nearest: f64,
     distance: f64,
     ends: [f64; 2],
+    /// What may hide it.
+    hiding: Option<&'a Hiding>,
 }
 
 impl<'a> Seen<'a> {
-    fn new(emitter: &'a Emitter, point: DVec3, normal: DVec3) -> Self {
+    fn new(emitter: &'a Emitter, point: DVec3, normal: DVec3, hiding: Option<&'a Hiding>) -> Self {
         let mut seen = Self {
             emitter,
             point,
@@ -40,6 +43,7 @@ impl<'a> Seen<'a> {
             nearest: 0.0,
             distance: 1.0,
             ends: [0.0, 1.0],
+            hiding,
         };
         match emitter.core {
             EmitterCore::Line {
@@ -106,24 +110,44 @@ impl<'a> Seen<'a> {
         self.at(x).0.length_squared()
     }
 
-    /// Returns where the core crosses the horizon, and where it is nearest.
+    /// Returns whether nothing hides a place of the core.
+    fn is_seen(&self, x: f64) -> bool {
+        let y = self.at(x).0;
+        self.hiding
+            .is_none_or(|hiding| !hiding.hides(self.point, self.point + y))
+    }
+
+    /// Returns the place between two at which something changes.
+    fn change(mut a: f64, mut b: f64, is_so: impl Fn(f64) -> bool) -> f64 {
+        let was_so = is_so(a);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (a + b);
+            match is_so(middle) == was_so {
+                true => a = middle,
+                false => b = middle,
+            }
+        }
+        0.5 * (a + b)
+    }
+
+    /// Returns where the core crosses the horizon, where it goes into hiding, and where it is nearest.
     fn breaks(&self) -> Vec<f64> {
         let [from, to] = self.ends;
         let at = |k: u32| from + (to - from) * f64::from(k) / f64::from(PLACES);
+        let is_above = |x: f64| self.height(x) > 0.0;
+        let is_seen = |x: f64| self.is_seen(x);
         let mut breaks = Vec::new();
+        let mut was_seen = is_seen(from);
         for k in 0..PLACES {
-            let (mut a, mut b) = (at(k), at(k + 1));
-            let was_above = self.height(a) > 0.0;
-            if was_above != (self.height(b) > 0.0) {
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (a + b);
-                    match (self.height(middle) > 0.0) == was_above {
-                        true => a = middle,
-                        false => b = middle,
-                    }
-                }
-                breaks.push(0.5 * (a + b));
+            let (a, b) = (at(k), at(k + 1));
+            if is_above(a) != is_above(b) {
+                breaks.push(Self::change(a, b, is_above));
             }
+            let now_seen = is_seen(b);
+            if was_seen != now_seen {
+                breaks.push(Self::change(a, b, is_seen));
+            }
+            was_seen = now_seen;
             let [before, here, after] = [k.max(1) - 1, k, k + 1].map(|k| self.distance2(at(k)));
             if here <= before && here <= after {
                 let (mut a, mut b) = (at(k.max(1) - 1), at(k + 1));
@@ -137,24 +161,32 @@ impl<'a> Seen<'a> {
                 breaks.push(0.5 * (a + b));
             }
         }
+        breaks.extend(self.ends);
+        breaks.sort_by(f64::total_cmp);
         breaks
     }
 
     /// Returns the integral of what falls on the surface, times a power of the share of the core.
     fn moment(&self, breaks: &[f64], power: i32) -> f64 {
-        let [from, to] = self.ends;
         let integrand = |x: f64| {
-            let (y, speed, share) = self.at(from + x);
+            let (y, speed, share) = self.at(x);
             let distance2 = y.length_squared() + self.emitter.radius.powi(2);
             share.powi(power) * speed * y.dot(self.normal).max(0.0) / distance2.powf(1.5)
         };
-        let mut breaks: Vec<f64> = breaks.iter().map(|x| x - from).collect();
-        integrate(integrand, &mut breaks, to - from, ERROR).value
+        let seen = |pair: &&[f64]| self.is_seen(0.5 * (pair[0] + pair[1]));
+        let part = |pair: &[f64]| {
+            let of_part = |x: f64| integrand(pair[0] + x);
+            integrate(of_part, &mut Vec::new(), pair[1] - pair[0], ERROR).value
+        };
+        breaks.windows(2).filter(seen).map(part).sum()
     }
 
     fn irradiance(&self) -> DVec3 {
         let [begin, middle, end] = self.emitter.light;
         if let EmitterCore::Point(_) = self.emitter.core {
+            if !self.is_seen(0.0) {
+                return DVec3::ZERO;
+            }
             let (y, ..) = self.at(0.0);
             let distance2 = y.length_squared() + self.emitter.radius.powi(2);
             return begin * y.dot(self.normal).max(0.0) / distance2.powf(1.5);
@@ -169,17 +201,54 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// Returns the irradiance, linear RGB, of points of surfaces with normals of any length but zero, in float64.
+/// Returns the irradiance, linear RGB, of points of surfaces with normals of any length but zero, in float64; with
+/// shadows, what the scene's meshes leave of it.
 ///
 /// # Errors
 /// [`Error::Scene`](crate::Error::Scene) if the scene is not valid.
 pub fn irradiance(scene: &Scene, points: &[DVec3], normals: &[DVec3]) -> Result<Vec<[f64; 3]>> {
     scene.validate()?;
-    let emitters = scene.emitters();
+    let caster = Caster::new(scene, scene.lighting.unwrap_or_default());
     let at = |(point, normal): (&DVec3, &DVec3)| {
-        let normal = normal.normalize();
-        let of_one = |emitter| Seen::new(emitter, *point, normal).irradiance();
-        emitters.iter().map(of_one).sum::<DVec3>().to_array()
+        let light = caster.irradiance(*point, normal.normalize());
+        light.to_array()
     };
     Ok(points.iter().zip(normals).map(at).collect())
+}
+
+/// What casts light, and what hides it.
+#[derive(Debug)]
+pub(super) struct Caster {
+    emitters: Vec<Emitter>,
+    hiding: Option<Hiding>,
+}
+
+impl Caster {
+    pub(super) fn new(scene: &Scene, lighting: Lighting) -> Self {
+        Self {
+            emitters: scene.emitters(&lighting),
+            hiding: Hiding::new(&scene.meshes).filter(|_| lighting.shadows),
+        }
+    }
+
+    /// Returns the irradiance of a point with a normal of length 1.
+    pub(super) fn irradiance(&self, point: DVec3, normal: DVec3) -> DVec3 {
+        let above = self.above(point, normal);
+        let of_one = |emitter| Seen::new(emitter, above, normal, self.hiding.as_ref()).irradiance();
+        self.emitters.iter().map(of_one).sum()
+    }
+
+    /// Returns whether nothing hides a direction from a point.
+    pub(super) fn sees(&self, point: DVec3, normal: DVec3, direction: DVec3) -> bool {
+        let above = self.above(point, normal);
+        self.hiding
+            .as_ref()
+            .is_none_or(|hiding| !hiding.hides(above, above + hiding.beyond * direction))
+    }
+
+    /// Returns a place a little above the surface, which is not to hide itself.
+    fn above(&self, point: DVec3, normal: DVec3) -> DVec3 {
+        let margin = self.hiding.as_ref().map_or(0.0, |hiding| hiding.margin);
+        point + margin * normal
+    }
 }

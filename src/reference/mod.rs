@@ -6,6 +6,7 @@
 mod field;
 mod footprint;
 mod irradiance;
+mod mesh;
 mod particles;
 mod quadrature;
 mod surface;
@@ -18,6 +19,9 @@ use glam::DVec3;
 #[doc(hidden)]
 pub use field::{CurveField, Field, Sample, Source, b_spline, sources};
 pub use irradiance::irradiance;
+pub(crate) use mesh::see_meshes;
+#[doc(hidden)]
+pub use mesh::{MeshRay, mesh_rays};
 #[doc(hidden)]
 pub use quadrature::integrate;
 pub(crate) use surface::see_surfaces;
@@ -214,10 +218,13 @@ pub fn render_simpson(scene: &Scene, divisions: u32) -> Result<RadianceImage> {
 
 fn render_image(scene: &Scene, method: Method) -> Result<RadianceImage> {
     scene.validate()?;
-    if scene.metaballs.is_empty() {
+    if scene.metaballs.is_empty() && scene.meshes.is_empty() {
         return render_light(scene, method);
     }
-    let seen = see_surfaces(scene)?;
+    let seen = match scene.meshes.is_empty() {
+        true => see_surfaces(scene)?,
+        false => see_meshes(scene, see_surfaces)?,
+    };
     let mut image = render_light(&seen.left_of(scene), method)?;
     let stride = 4 * scene.image.width as usize;
     seen.add(scene, 0..scene.image.height, (image.as_mut_slice(), stride));

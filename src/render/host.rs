@@ -120,9 +120,10 @@ impl Renderer {
         let simulated = self.simulated(scene)?;
         let scene = simulated.as_ref().unwrap_or(scene);
         if scene.has_surfaces() {
-            let what = match scene.metaballs.is_empty() {
-                true => "collider",
-                false => "metaballs",
+            let what = match (scene.meshes.is_empty(), scene.metaballs.is_empty()) {
+                (false, _) => "mesh",
+                (true, false) => "metaballs",
+                (true, true) => "collider",
             };
             let reason = "frames for a host have no surfaces; render them into an image (Renderer::render_into)";
             return Err(unfit(what, reason));

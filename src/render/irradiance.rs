@@ -9,7 +9,7 @@ use crate::reference;
 use crate::scene::{Ray, Scene};
 
 impl DeviceRenderer {
-    /// Returns what [`PointLighter::irradiance`](crate::light::PointLighter) says.
+    /// Returns what [`Meshes::irradiance`](crate::mesh::Meshes) says.
     fn irradiance(
         &mut self,
         scene: &Scene,
@@ -17,17 +17,17 @@ impl DeviceRenderer {
         normals: &[DVec3],
     ) -> Result<Vec<[f32; 3]>> {
         let Self {
-            lighter, compute, ..
+            meshes, compute, ..
         } = self;
-        lighter.irradiance(compute, scene, points, normals)
+        meshes.irradiance(compute, scene, points, normals)
     }
 }
 
 impl Renderer {
     /// Returns the irradiance, linear RGB, of points of surfaces with these normals, of any length but zero: what the
     /// cores of a scene's waves cast on them, by its [`Lighting`](crate::scene::Lighting), or by the default where it
-    /// has none. A matt surface of the albedo a then has the radiance `a / pi` times that. Ambient light, a sun, and
-    /// shadows play no part, nor do particles. Of several devices the first does it.
+    /// has none; with shadows, what its meshes leave of that. A matt surface of the albedo a then has the radiance
+    /// `a / pi` times that. Ambient light and a sun play no part, nor do particles. Of several devices the first does it.
     ///
     /// Float32 finds it within 1e-2 of the integral, as a rule within 1e-4: what is worst are circles and curves that
     /// the horizon of a near surface cuts.

@@ -1,14 +1,15 @@
 //! Renders scenes on one OpenCL device: plans a frame, draws it in bands that fit into the film, and reads them back.
 
 use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::engines::{Engines, FramePlan};
 use crate::bloom::Spreader;
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
-use crate::image::{Bloom, ImageSize};
-use crate::light::PointLighter;
+use crate::image::{Bloom, DepthImage, ImageSize};
+use crate::mesh::Meshes;
 #[cfg(feature = "papers")]
 use crate::metaball::SurfaceCounts;
 use crate::metaball::Surfaces;
@@ -25,7 +26,7 @@ pub(crate) struct DeviceRenderer {
     pub(super) engines: Engines,
     pub(super) spreader: Spreader,
     pub(super) surfaces: Surfaces,
-    pub(super) lighter: PointLighter,
+    pub(super) meshes: Meshes,
     /// Of the bloom of the last frame.
     pub(super) bloom_cost: FrameCost,
     pub(super) film: Film,
@@ -72,7 +73,7 @@ impl DeviceRenderer {
             engines: Engines::new(&compute, options)?,
             spreader: Spreader::new(options),
             surfaces: Surfaces::new(options),
-            lighter: PointLighter::new(options),
+            meshes: Meshes::new(options),
             bloom_cost: FrameCost::default(),
             film: Film::new(),
             host,
@@ -118,6 +119,23 @@ impl DeviceRenderer {
             .surfaces
             .draw(&self.compute, scene, scene.rays_across())?;
         Ok((seen, self.surfaces.cost()))
+    }
+
+    /// Finds the meshes of a valid scene along its rays, and returns what that cost, too.
+    pub(crate) fn trace_meshes(&mut self, scene: &Scene) -> Result<(DepthImage, FrameCost)> {
+        let across = scene.rays_across();
+        let depth = self.meshes.trace(&self.compute, scene, across)?;
+        Ok((depth, self.meshes.cost()))
+    }
+
+    /// Returns the light of the meshes that were traced last, up to final lengths, and what that cost.
+    pub(crate) fn shade_meshes(
+        &mut self,
+        scene: &Scene,
+        ends: &DepthImage,
+    ) -> Result<(Arc<Vec<f32>>, FrameCost)> {
+        let light = self.meshes.shade(&self.compute, scene, ends)?;
+        Ok((light, self.meshes.cost()))
     }
 
     /// Returns what [`Wave::grain_rows`] says.

@@ -10,6 +10,7 @@ use super::Renderer;
 use crate::error::{Error, Result};
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::particle::{Simulation, Solid};
+use crate::reference;
 use crate::scene::{
     AMBIENT, Camera, Collider, ColliderShape, LAMP, List, Scene, SeenSurfaces, ViewPlane,
 };
@@ -56,7 +57,8 @@ struct Seen {
 impl Scene {
     /// Returns whether there are surfaces that hide light.
     pub(super) fn has_surfaces(&self) -> bool {
-        !self.metaballs.is_empty() || self.colliders.iter().any(|collider| collider.visible)
+        let has_listed = !self.metaballs.is_empty() || !self.meshes.is_empty();
+        has_listed || self.colliders.iter().any(|collider| collider.visible)
     }
 
     /// Refuses what is seen in pictures only.
@@ -95,8 +97,35 @@ impl Renderer {
         }))
     }
 
-    /// Finds all surfaces along the rays of a valid scene: colliders, and metaballs before them.
-    pub(super) fn see_all_surfaces(&mut self, scene: &Scene) -> Result<SeenSurfaces> {
+    /// Finds all surfaces along the rays of a valid scene: meshes, then what lies before them of all others.
+    pub(crate) fn see_all_surfaces(&mut self, scene: &Scene) -> Result<SeenSurfaces> {
+        if scene.meshes.is_empty() {
+            return self.see_other_surfaces(scene);
+        }
+        let Some(device) = self.mesh_device() else {
+            return reference::see_meshes(scene, |behind| self.see_behind_meshes(behind));
+        };
+        let (depth, cost) = device.trace_meshes(scene)?;
+        self.cost_before = self.cost_before.then(cost);
+        let mut seen = self.see_behind_meshes(&scene.behind_meshes(&depth))?;
+        if let Some(device) = self.mesh_device() {
+            let (light, cost) = device.shade_meshes(scene, &seen.depth)?;
+            self.cost_before = self.cost_before.then(cost);
+            seen.brighten(&light);
+        }
+        Ok(seen)
+    }
+
+    /// Finds the other surfaces of a scene whose rays meshes have ended.
+    fn see_behind_meshes(&mut self, scene: &Scene) -> Result<SeenSurfaces> {
+        match (scene.has_surfaces(), &scene.depth) {
+            (false, Some(depth)) => Ok(SeenSurfaces::dark(scene, depth.clone())),
+            _ => self.see_other_surfaces(scene),
+        }
+    }
+
+    /// Finds colliders along the rays of a valid scene, and metaballs before them.
+    fn see_other_surfaces(&mut self, scene: &Scene) -> Result<SeenSurfaces> {
         let see = |renderer: &mut Self, scene: &Scene| {
             let (seen, cost) = renderer.see_surfaces(scene)?;
             renderer.cost_before = renderer.cost_before.then(cost);
@@ -121,11 +150,7 @@ impl Renderer {
                     ..scene.clone()
                 };
                 see(self, &behind).map(|mut seen| {
-                    let colliders = shade(scene, &seen.depth, &visible(scene));
-                    let light = Arc::make_mut(&mut seen.light).as_chunks_mut::<4>().0;
-                    for (to, from) in light.iter_mut().zip(colliders.as_chunks::<4>().0) {
-                        (0..3).for_each(|channel| to[channel] += from[channel]);
-                    }
+                    seen.brighten(&shade(scene, &seen.depth, &visible(scene)));
                     seen
                 })
             }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 use std::time::Instant;
 
-use super::one::Rows;
+use super::one::{DeviceRenderer, Rows};
 use super::{Renderer, RendererBackend, whole};
 use crate::cost::FrameCost;
 use crate::error::Result;
@@ -92,6 +92,15 @@ impl Renderer {
                 };
                 Ok((seen, cost))
             }
+        }
+    }
+
+    /// Returns the device that traces meshes: of several the first, and none on the reference.
+    pub(super) fn mesh_device(&mut self) -> Option<&mut DeviceRenderer> {
+        match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => Some(renderer),
+            RendererBackend::Several(renderer) => Some(renderer.first()),
+            RendererBackend::Reference { .. } => None,
         }
     }
 

@@ -55,12 +55,11 @@ const WITHOUT_SIZE: f64 = 1e-3;
 macro_rules! define_emitters {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         impl Scene {
-            /// Returns what casts light on surfaces, of a valid scene.
-            pub(crate) fn emitters(&self) -> Vec<Emitter> {
-                let lighting = self.lighting.unwrap_or_default();
+            /// Returns what casts light on surfaces, of a valid scene that is lit so.
+            pub(crate) fn emitters(&self, lighting: &Lighting) -> Vec<Emitter> {
                 let mut emitters = Vec::new();
                 if lighting.cast {
-                    $(self.$list.iter().for_each(|source| add_emitters(source, &lighting, &mut emitters));)*
+                    $(self.$list.iter().for_each(|source| add_emitters(source, lighting, &mut emitters));)*
                 }
                 emitters
             }

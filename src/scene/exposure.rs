@@ -35,8 +35,10 @@ impl Scene {
         let height = self.camera.height_at(self.focus());
         let mut brightest: f64 = 0.0;
         // What a surface sends out is said by its colour, what a particle does by its coefficient.
-        let mut has_peak =
-            self.decay.is_some() || !self.metaballs.is_empty() || self.has_particles();
+        let mut has_peak = self.decay.is_some()
+            || !self.metaballs.is_empty()
+            || !self.meshes.is_empty()
+            || self.has_particles();
         self.for_each_shared(&mut |source| {
             has_peak |= source.has_peak();
             for light in source.lights() {

@@ -47,9 +47,13 @@ macro_rules! define_light_groups {
                     Some(_) => Lighting { ambient: DVec3::ZERO, sun: None, ..lighting },
                     None => lighting,
                 });
+                scene.meshes = self.meshes.clone();
                 scene.metaballs = self.metaballs.clone();
                 if group.is_some() {
                     scene.metaballs.iter_mut().for_each(|surface| surface.color = DVec3::ZERO);
+                    if self.lighting.is_none() {
+                        scene.meshes.iter_mut().for_each(|mesh| mesh.albedo = DVec3::ZERO);
+                    }
                 }
                 scene.colliders = self.colliders.clone();
                 match group {
@@ -85,7 +89,7 @@ impl Scene {
     /// Returns whether there is light of no group: of sources, of particles, or of surfaces.
     #[must_use]
     pub fn has_ungrouped_light(&self) -> bool {
-        let mut has = !self.metaballs.is_empty() || self.has_particles();
+        let mut has = !self.metaballs.is_empty() || !self.meshes.is_empty() || self.has_particles();
         has |= self.colliders.iter().any(|collider| collider.visible);
         self.for_each_light_group(&mut |group| has |= group.is_none());
         has

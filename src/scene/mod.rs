@@ -37,6 +37,7 @@ mod light_element;
 mod light_group;
 mod lighting;
 mod list;
+mod mesh;
 mod metaballs;
 mod particles;
 mod points;
@@ -72,6 +73,7 @@ pub use integration::{
 pub use light_element::LightElement;
 pub use lighting::{Lighting, Sun};
 pub use list::List;
+pub use mesh::{Mesh, TriangleList};
 pub(crate) use metaballs::{AMBIENT, LAMP};
 pub use metaballs::{MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs};
 pub use particles::Particles;
@@ -123,6 +125,8 @@ macro_rules! define_scene {
             pub waves: List<EmittedWave>,
             /// What they hit.
             pub colliders: List<Collider>,
+            /// Triangles, which hide the light behind them too.
+            pub meshes: List<Mesh>,
             /// Surfaces, which hide the light behind them too.
             pub metaballs: List<Metaballs>,
             /// Particles that shine.
@@ -148,6 +152,7 @@ macro_rules! define_scene {
                     simulation: None,
                     waves: List::new(),
                     colliders: List::new(),
+                    meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
                     light_elements: List::new(),

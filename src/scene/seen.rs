@@ -49,11 +49,41 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// Returns the scene that lies behind its meshes, up to which rays go so far.
+    pub(crate) fn behind_meshes(&self, depth: &DepthImage) -> Self {
+        Self {
+            depth: Some(depth.clone()),
+            meshes: List::new(),
+            ..self.clone()
+        }
+    }
+}
+
 impl SeenSurfaces {
+    /// Makes surfaces that give no light, up to which rays go so far.
+    pub(crate) fn dark(scene: &Scene, depth: DepthImage) -> Self {
+        let mut light = vec![0.0; 4 * scene.image.pixels()];
+        light.iter_mut().skip(3).step_by(4).for_each(|it| *it = 1.0);
+        Self {
+            depth,
+            light: light.into(),
+        }
+    }
+
+    /// Adds the light of further surfaces of the same picture, whose alpha is the same.
+    pub(crate) fn brighten(&mut self, more: &[f32]) {
+        let light = Arc::make_mut(&mut self.light).as_chunks_mut::<4>().0;
+        for (to, from) in light.iter_mut().zip(more.as_chunks::<4>().0) {
+            (0..3).for_each(|channel| to[channel] += from[channel]);
+        }
+    }
+
     /// Returns the light of a scene that surfaces leave: they are gone, but hide what is behind them.
     pub(crate) fn left_of(&self, scene: &Scene) -> Scene {
         Scene {
             depth: Some(self.depth.clone()),
+            meshes: List::new(),
             metaballs: List::new(),
             ..scene.clone()
         }

@@ -61,6 +61,10 @@ impl Scene {
         check_softening(integration.softening).map_err(of("integration"))?;
         check_display(&self.display, self.image).map_err(of("display"))?;
         self.check_depth().map_err(of(""))?;
+        for (index, mesh) in self.meshes.iter().enumerate() {
+            mesh.check()
+                .map_err(|fault| fault.of(&format!("mesh[{index}]")))?;
+        }
         for (index, metaballs) in self.metaballs.iter().enumerate() {
             metaballs
                 .check()

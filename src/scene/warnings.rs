@@ -161,7 +161,10 @@ impl Scene {
         {
             return None; // what is told of those is another matter
         }
-        if self.has_particles() || self.colliders.iter().any(|it| it.visible) {
+        if self.has_particles()
+            || !self.meshes.is_empty()
+            || self.colliders.iter().any(|it| it.visible)
+        {
             return None;
         }
         let Some(first) = first else {

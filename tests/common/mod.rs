@@ -7,6 +7,7 @@ pub mod engines;
 pub mod host;
 #[cfg(unix)] // loads a shared library
 pub mod layer;
+pub mod meshes;
 pub mod metaballs;
 pub mod occluders;
 pub mod program;

@@ -9,6 +9,7 @@ mod canaries; // looks for what is written behind an image
 mod device_functions; // compares device functions, one at a time, with float64
 mod distances; // compares the distance to every kind of core with float64
 mod film; // lets a second engine add its light to the wave's
+mod hidden; // sends rays through edges and corners of a closed mesh
 mod layout; // finds every field of every device struct by its name
 mod sanitizer; // runs every kernel on every lane width, small enough for a simulator
 mod several_devices;

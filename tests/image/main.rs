@@ -28,6 +28,7 @@ mod images; // bounds the worst pixel of the Simpson rule
 mod jittered; // holds stratified samples to their definition, and shows what they gain
 mod laws; // checks what every image obeys: linearity, order, mirror, motion, scale
 mod layers; // holds several lights of one core to as many sources
+mod meshes; // compares meshes with float64, and with what hides and is hidden
 mod metaballs; // holds surfaces to float64 by another method
 mod particles; // holds balls and streaks of light to float64
 mod parts; // draws rows, rays and changed scenes as the whole image has them

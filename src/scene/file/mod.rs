@@ -10,6 +10,7 @@ mod integration;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
 mod locate;
+mod mesh;
 mod metaballs;
 mod moving;
 mod numbers;
@@ -48,6 +49,8 @@ use groups::{GroupTable, Groups};
 pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
 pub use integration::MethodKeys;
+pub(super) use mesh::MESH_KEYS;
+use mesh::MeshTable;
 pub(super) use metaballs::METABALLS_KEYS;
 use metaballs::MetaballsTable;
 pub(super) use particles::PARTICLES_KEYS;
@@ -94,6 +97,8 @@ macro_rules! define_scene_file {
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             collider: Vec<ColliderTable>,
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            mesh: Vec<MeshTable>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
             metaballs: Vec<MetaballsTable>,
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             particles: Vec<ParticlesTable>,
@@ -126,6 +131,7 @@ macro_rules! define_scene_file {
                     simulation: self.simulation,
                     waves: std::mem::take(&mut self.wave),
                     colliders: self.colliders(),
+                    meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
                     light_elements: List::new(),
@@ -195,6 +201,7 @@ macro_rules! define_scene_file {
                     simulation: scene.simulation,
                     wave: scene.waves.clone(),
                     collider: scene.colliders.iter().map(ColliderTable::of).collect(),
+                    mesh: scene.meshes.iter().map(MeshTable::of).collect(),
                     metaballs,
                     particles,
                     $($kind: scene.$list.clone(),)*
@@ -237,6 +244,11 @@ impl SceneFile {
         self.simulation = other.simulation;
         self.wave = other.wave;
         self.collider = other.collider;
+        let mut mesh = other.mesh;
+        for (new, old) in mesh.iter_mut().zip(&self.mesh) {
+            new.share(old);
+        }
+        self.mesh = mesh;
         let mut metaballs = other.metaballs;
         for (new, old) in metaballs.iter_mut().zip(&self.metaballs) {
             new.share(old);
@@ -251,7 +263,7 @@ impl SceneFile {
 
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
     fn exposure_of_brightest(mut self) -> Option<f64> {
-        if !self.metaballs.is_empty() || !self.particles.is_empty() {
+        if !self.mesh.is_empty() || !self.metaballs.is_empty() || !self.particles.is_empty() {
             return None;
         }
         let mut scene = self.scene();
@@ -277,6 +289,9 @@ impl SceneFile {
         self.check_colliders()?;
         let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
         groups.check(&scene)?;
+        for (index, table) in self.mesh.iter().enumerate() {
+            scene.meshes.push(table.open(index, folder)?);
+        }
         for (index, table) in self.metaballs.iter().enumerate() {
             scene.metaballs.push(table.open(index, folder)?);
         }

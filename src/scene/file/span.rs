@@ -40,12 +40,14 @@ impl AnimatedScene {
         &self.document.motion.text
     }
 
-    /// Returns the files that it names: a depth image, and a background.
+    /// Returns the files that it names: a depth image, a background, and meshes.
     #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
         let Document { file, motion } = &self.document;
         let depth = file.depth.as_ref().map(DepthTable::file);
+        let meshes = file.mesh.iter().filter_map(MeshTable::file);
         let named = depth.into_iter().chain(file.display.background_file());
+        let named = named.chain(meshes);
         named.map(|file| motion.folder.join(file)).collect()
     }
 }

@@ -129,7 +129,7 @@ impl Placement {
     };
 
     /// Makes that of a group.
-    pub(super) fn new(scale: f64, rotate: Option<Rotation>, translation: DVec3) -> Self {
+    pub(in crate::scene) fn new(scale: f64, rotate: Option<Rotation>, translation: DVec3) -> Self {
         Self {
             scale,
             rotation: rotate.map_or(DQuat::IDENTITY, |it| turn(it.axis, it.angle)),

@@ -6,7 +6,7 @@ use crate::image::ImageSize;
 use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
 use crate::scene::file::{
     BLOOM_KEYS, BOX_KEYS, COLLIDER_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS,
-    LATTICE_KEYS, METABALLS_KEYS, PARTICLES_KEYS, PLANE_KEYS, SPHERE_KEYS, TIME_KEYS,
+    LATTICE_KEYS, MESH_KEYS, METABALLS_KEYS, PARTICLES_KEYS, PLANE_KEYS, SPHERE_KEYS, TIME_KEYS,
 };
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
@@ -215,6 +215,12 @@ pub fn tables() -> Vec<Table> {
     tables.push(group);
     tables.extend(simulated_tables());
     tables.push(Table::new(
+        "mesh",
+        Many,
+        "A surface of triangles; it hides the light",
+        MESH_KEYS,
+    ));
+    tables.push(Table::new(
         "metaballs",
         Many,
         "A surface where the summed field of particles reaches a threshold; it hides the light",
@@ -256,7 +262,7 @@ pub fn tables() -> Vec<Table> {
         Table::new(
             "rotate",
             Inside,
-            "A turn of a group about its origin",
+            "A turn of a group, or of a mesh, about its origin",
             ROTATION_KEYS,
         ),
         Table::new(

@@ -1,11 +1,12 @@
-//! The first use of the freshly built kernel: a source of every kind, whose light the reference integrates by another
+//! The first use of the freshly built kernels of light: a source of every kind, whose light the reference integrates by another
 //! method. Some drivers miscompile kernels.
 
 use glam::DVec3;
 
-use super::points::PointLighter;
+use super::Meshes;
+use super::kernels::Shading;
 use crate::error::{Error, Result};
-use crate::opencl::{Compute, Program};
+use crate::opencl::{Compute, Program, RendererOptions};
 use crate::reference;
 use crate::scene::kinds::for_each_kind;
 use crate::scene::{Camera, Profile, Scene, SourceKind};
@@ -38,30 +39,30 @@ fn places() -> (Vec<DVec3>, Vec<DVec3>) {
     (0..24).map(place).unzip()
 }
 
-/// Tests the kernel, unless that was done on this device before.
+/// Tests the kernels, unless that was done on this device before.
 ///
 /// # Errors
-/// [`Error::SelfTest`] if it computes wrong.
-pub(super) fn self_test(
-    lighter: &mut PointLighter,
+/// [`Error::SelfTest`] if they compute wrong.
+pub(super) fn shade_test(
     compute: &Compute,
-    program: &Program,
-) -> Result<()> {
-    if !lighter.is_tested(compute) || program.was_tested() {
-        return Ok(());
+    options: &RendererOptions,
+    (shading, program): (Shading, &Program),
+) -> Result<Shading> {
+    let is_experiment = options.skips_self_test || compute.device().is_simulator;
+    if is_experiment || program.was_tested() {
+        return Ok(shading);
     }
+    let mut tester = Meshes::new(options);
+    tester.shading = Some(shading);
     let scene = specimens();
     let (points, normals) = places();
-    let found = lighter.light(compute, &scene, &points, &normals)?;
+    let found = tester.irradiance(compute, &scene, &points, &normals)?;
     let expected = reference::irradiance(&scene, &points, &normals)?;
     for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
         let most = expected.iter().copied().fold(0.0, f64::max);
-        let off = found
-            .iter()
-            .zip(expected)
-            .map(|(a, b)| (f64::from(*a) - b).abs());
-        let off = off.fold(0.0, |most: f64, off| if off <= most { most } else { off });
-        if off.is_nan() || off > LIMIT * most {
+        let off = found.iter().zip(expected);
+        let is_right = |(a, b): (&f32, f64)| (f64::from(*a) - b).abs() <= LIMIT * most;
+        if !off.map(is_right).all(|is_right| is_right) {
             let device = compute.device();
             return Err(Error::SelfTest {
                 device: device.name.clone(),
@@ -73,5 +74,6 @@ pub(super) fn self_test(
         }
     }
     program.mark_tested();
-    Ok(())
+    let lost = || Error::Unsupported("the kernels of light were lost in their test".to_owned());
+    tester.shading.take().ok_or_else(lost)
 }
