@@ -1,6 +1,6 @@
-//! Meshes: the engine that finds triangles along rays on an OpenCL device, in a tree of boxes that the host builds. What
-//! it finds ends the rays of all that follows; the light that meshes throw back is found when it is known what hides
-//! them. The tree stays until a mesh is another, and what rays meet until the camera is.
+//! Meshes: the engine that finds triangles along rays on an OpenCL device, in a tree of boxes that the host builds.
+//! What it finds ends the rays of all that follows; the light that meshes throw back is found when it is known what
+//! hides them. The tree stays until a mesh is another, and what rays meet until the camera is.
 
 mod kernels;
 pub mod pack;

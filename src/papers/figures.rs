@@ -1,6 +1,5 @@
 //! The papers' figures: scenes of `scenes/`, each with its caption.
 
-use super::tetrahedra;
 use crate::error::Result;
 use crate::image::ImageSize;
 use crate::scene::Scene;
@@ -11,7 +10,7 @@ use crate::scene::Scene;
 pub struct Figure {
     /// What its file is called, such as `figure-07`, or `2010-figure-08` where the paper is not that of 2015.
     pub name: &'static str,
-    /// The scene. Where surfaces hide its light it names a file, of which [`Figure::scene`] has no need.
+    /// The scene, which names no file.
     pub text: &'static str,
 }
 
@@ -91,17 +90,13 @@ impl Figure {
         lines.map(str::trim).collect::<Vec<_>>().join(" ")
     }
 
-    /// Makes its scene, of its own size without one. The tetrahedra of 2010, figures 15-18, hide light in every size.
+    /// Makes its scene, of its own size without one.
     ///
     /// # Errors
-    /// Those of [`tetrahedra`].
+    /// None for sizes that an image can have.
     pub fn scene(&self, size: Option<ImageSize>) -> Result<Scene> {
-        let hides = self.text.contains("\n[depth]\n");
         Scene::from_reader_with(self.text.as_bytes(), self.name, |scene, _| {
             scene.image = size.unwrap_or(scene.image);
-            if hides {
-                scene.depth = Some(tetrahedra(&scene.camera, scene.image)?);
-            }
             Ok(())
         })
     }
@@ -111,11 +106,6 @@ impl Figure {
 mod tests {
     use super::*;
     use std::path::Path;
-
-    fn depths(scene: &Scene) -> Vec<f32> {
-        let depth = scene.depth.as_ref();
-        depth.map_or(Vec::new(), |depth| depth.as_slice().to_vec())
-    }
 
     #[test]
     fn every_figure_of_the_repository_is_here_and_is_its_file() {
@@ -139,14 +129,7 @@ mod tests {
                 Scene::from_file(&path).unwrap(),
             );
             assert_eq!((scene.image, &scene.display), (file.image, &file.display));
-            let (found, known) = (depths(&scene), depths(&file));
-            assert_eq!(found.len(), known.len());
-            // The file's rays have an angle of more digits: at an outline one may pass that the other does not.
-            let is_off = |(a, b): &(f32, f32)| {
-                a != b && ((a - b).abs() / b > 1e-4 || a.is_infinite() != b.is_infinite())
-            };
-            let off = found.into_iter().zip(known).filter(is_off).count();
-            assert!(1000 * off <= scene.image.pixels(), "{}: {off}", figure.name);
+            assert_eq!(scene.meshes, file.meshes);
             assert!(
                 figure.caption().starts_with("Figure"),
                 "{}",
@@ -163,14 +146,7 @@ mod tests {
             height: 30,
         };
         let scene = named("2010-figure-16").scene(Some(size)).unwrap();
-        assert_eq!((scene.image, scene.depth.unwrap().size()), (size, size));
-        assert!(
-            named("figure-07")
-                .scene(Some(size))
-                .unwrap()
-                .depth
-                .is_none()
-        );
+        assert_eq!((scene.image, scene.meshes.len()), (size, 2));
         assert_eq!(
             named("figure-14").caption(),
             "Figure 14 of Watanabe, Abe, Konno 2015: a torus, t = 8.0, for several numbers of divisions (--divisions). \

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::SceneError;
 use crate::scene::colors::read_color;
-use crate::scene::mesh::ALBEDO;
+use crate::scene::mesh::{ALBEDO, buffer_files};
 use crate::scene::values::{read_vector, read_vectors};
 use crate::scene::{Mesh, Rotation, TriangleList};
 
@@ -69,9 +69,11 @@ impl Default for MeshTable {
 }
 
 impl MeshTable {
-    /// Returns its file, from the folder of the scene.
-    pub(super) fn file(&self) -> Option<&Path> {
-        self.file.as_deref()
+    /// Returns its file, which is from `folder`, and those that this one names.
+    pub(super) fn files(&self, folder: &Path) -> Vec<PathBuf> {
+        let file = self.file.as_ref().map(|file| folder.join(file));
+        let named = file.as_deref().map_or(Vec::new(), buffer_files);
+        file.into_iter().chain(named).collect()
     }
 
     /// Makes a mesh as it is written.

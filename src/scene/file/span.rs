@@ -45,10 +45,11 @@ impl AnimatedScene {
     pub fn files(&self) -> Vec<PathBuf> {
         let Document { file, motion } = &self.document;
         let depth = file.depth.as_ref().map(DepthTable::file);
-        let meshes = file.mesh.iter().filter_map(MeshTable::file);
         let named = depth.into_iter().chain(file.display.background_file());
-        let named = named.chain(meshes);
-        named.map(|file| motion.folder.join(file)).collect()
+        let meshes = file.mesh.iter();
+        let meshes = meshes.flat_map(|mesh| mesh.files(&motion.folder));
+        let named = named.map(|file| motion.folder.join(file));
+        named.chain(meshes).collect()
     }
 }
 

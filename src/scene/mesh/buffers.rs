@@ -13,7 +13,7 @@ use glam::Vec3;
 use crate::shown::shown;
 
 /// What a text begins with that stands in the place of a file.
-const DATA: &str = "data:";
+pub(super) const DATA: &str = "data:";
 
 /// The bytes of all buffers.
 pub(super) struct Buffers<'a>(Vec<Cow<'a, [u8]>>);
@@ -113,7 +113,7 @@ impl Buffers<'_> {
 }
 
 /// Returns a name with `%20` and the like as the characters that they stand for.
-fn plain(uri: &str) -> String {
+pub(super) fn plain(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();
     while let Some((first, after)) = rest.split_first() {

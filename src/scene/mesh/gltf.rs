@@ -2,13 +2,14 @@
 //! all nodes of the scene that is shown, where the nodes put them. Materials, cameras, lights and animations are passed
 //! over, points and lines too; what would move or unpack corners is refused.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Gltf, Node, Primitive, Semantic};
 use glam::{DMat4, DVec3, Mat4};
 
-use super::buffers::Buffers;
+use super::buffers::{Buffers, DATA, plain};
 use super::file::Read;
 use super::list::MOST;
 use crate::memory;
@@ -87,6 +88,22 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Read {
         }
     }
     Ok((reader.vertices, reader.triangles))
+}
+
+/// Returns the files with buffers that a file of this name needs, as far as it can be read.
+pub(in crate::scene) fn buffer_files(path: &Path) -> Vec<PathBuf> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let is_text = path
+        .extension()
+        .is_some_and(|it| it.eq_ignore_ascii_case("gltf"));
+    let bytes = is_text.then(|| fs::read(path).ok()).flatten();
+    let read = bytes.and_then(|bytes| Gltf::from_slice_without_validation(&bytes).ok());
+    let uris = read.map_or(Vec::new(), |it| {
+        let buffers = it.document.into_json().buffers.into_iter();
+        buffers.filter_map(|buffer| buffer.uri).collect()
+    });
+    let uris = uris.iter().filter(|uri| !uri.starts_with(DATA));
+    uris.map(|uri| folder.join(plain(uri))).collect()
 }
 
 /// Checks the length that a binary file says that it has.

@@ -165,7 +165,8 @@ impl TriangleList {
     }
 
     /// Returns a number that no list of other contents has had in this process.
-    pub(crate) fn revision(&self) -> u64 {
+    #[cfg(test)]
+    fn revision(&self) -> u64 {
         self.0.revision
     }
 

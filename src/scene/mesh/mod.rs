@@ -13,6 +13,8 @@ mod obj;
 
 use glam::DVec3;
 
+#[cfg(feature = "files")]
+pub(super) use gltf::buffer_files;
 pub use list::TriangleList;
 
 use super::group::{Placement, Rotation};

@@ -15,7 +15,7 @@ use crate::scene::file::raw_fault;
 use crate::scene::{Preset, Scene};
 use validator::{refusal, refusal_of_table};
 
-const DEPTH: &str = "scenes/2010-figure-15-depth.exr";
+const DEPTH: &str = "tests/data/tetrahedra.exr";
 
 /// Returns a value of a key that is right there, in TOML.
 fn sample(key: &Key) -> String {
@@ -83,6 +83,10 @@ fn scene(table: &Table, but: &str, line: &str) -> String {
         // A collider has one shape.
         "collider" if !["box", "sphere", "plane", "mesh"].contains(&but) => {
             "sphere = { radius = 1 }\n".to_owned()
+        }
+        // A mesh has triangles.
+        "mesh" if !["vertices", "triangles", "file"].contains(&but) => {
+            "vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\ntriangles = [[0, 1, 2]]\n".to_owned()
         }
         "simulation" if but != "time" => "time = 70\n".to_owned(),
         _ => required(table, but).join("\n") + "\n",
