@@ -43,22 +43,33 @@ __kernel void shade_meshes(TREE_PARAMETERS, LIGHTS_PARAMETERS, const MeshSight s
     if (pixel >= end_pixel)
         return;
     const uint width = sight.width / sight.across, column = pixel % width, row = pixel / width;
-    float3 sum = (float3)(0.0f), last = (float3)(0.0f);
-    uint shaded = NOTHING;
-    for (uint part = 0u; part < sight.across * sight.across; ++part) {
+    const uint count = sight.across * sight.across;
+    float3 sum = (float3)(0.0f), rays = (float3)(0.0f);
+    float met = 0.0f;
+    uint last = NOTHING;
+    for (uint part = 0u; part <= count; ++part) {
         const uint x = column * sight.across + part % sight.across, y = row * sight.across + part / sight.across;
-        const uint place = y * sight.width + x, triangle = triangles[place];
-        if (triangle == NOTHING || (has_finals && lengths[place] > finals[place] * (1.0f + ROUNDING)))
-            continue;
-        if (triangle != shaded) {
-            const EyeRay ray = eye_ray(&sight, (float)x, (float)y);
-            last = radiance_of(TREE_ARGUMENTS, LIGHTS_ARGUMENTS, &lit, albedos, tree_triangles + triangle, &ray,
-                               lengths[place] / length(ray.way));
-            shaded = triangle;
+        const uint place = y * sight.width + x;
+        const bool is_seen = part < count && triangles[place] != NOTHING &&
+                             !(has_finals && lengths[place] > finals[place] * (1.0f + ROUNDING));
+        const uint triangle = is_seen ? triangles[place] : NOTHING;
+        if (triangle != last && last != NOTHING) {
+            // Rays that meet one triangle, one after another, have the light of their middle.
+            const float3 middle = rays / met;
+            const EyeRay ray = eye_ray(&sight, middle.x, middle.y);
+            sum += met *
+                   radiance_of(TREE_ARGUMENTS, LIGHTS_ARGUMENTS, &lit, albedos, tree_triangles + last, &ray, middle.z);
+            rays = (float3)(0.0f);
+            met = 0.0f;
         }
-        sum += last;
+        last = triangle;
+        if (!is_seen)
+            continue;
+        const EyeRay ray = eye_ray(&sight, (float)x, (float)y);
+        rays += (float3)((float)x, (float)y, lengths[place] / length(ray.way));
+        met += 1.0f;
     }
-    light[pixel] = (float4)(sum / (float)(sight.across * sight.across), 1.0f);
+    light[pixel] = (float4)(sum / (float)count, 1.0f);
 }
 
 // Finds the irradiance of listed points, for hosts.

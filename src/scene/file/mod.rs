@@ -27,7 +27,7 @@ mod tree;
 mod words;
 mod write;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
@@ -415,15 +415,5 @@ fn empty_file() -> SceneError {
             "camera",
             "the file is empty; a scene needs at least [camera] with eye and target",
         )
-    }
-}
-
-fn name_file(error: Error, path: &Path) -> Error {
-    match error {
-        Error::Scene(mut fault) => {
-            fault.path = Some(PathBuf::from(path));
-            Error::Scene(fault)
-        }
-        other => other,
     }
 }
