@@ -21,10 +21,14 @@ INLINE float3 beyond_meshes(TREE_PARAMETERS, const float3 place, const float3 di
 CALL float3 radiance_of(TREE_PARAMETERS, LIGHTS_PARAMETERS, const MeshLight *const light,
                         __global const float4 *const albedos, __global const MeshTriangle *const triangle,
                         const EyeRay *const ray, const float depth) {
-    const float3 outside = normal_of(triangle->normal);
+    const float3 corner = (float3)(triangle->a_x, triangle->a_y, triangle->a_z);
+    const float3 ab = (float3)(triangle->b_x, triangle->b_y, triangle->b_z) - corner;
+    const float3 ac = (float3)(triangle->c_x, triangle->c_y, triangle->c_z) - corner;
+    const float3 outside = normalize(cross(ab, ac));
     const float3 normal = dot(outside, ray->way) > 0.0f ? -outside : outside;
-    // A little above the surface, which is not to hide itself.
-    const float3 place = ray->origin + depth * ray->way + tree_margin * normal;
+    // A little above the triangle's plane, which is not to hide itself, and which depths miss by more than that.
+    const float3 met = ray->origin + depth * ray->way;
+    const float3 place = met + (tree_margin - dot(met - corner, normal)) * normal;
     float facing = fmax(dot(normal, light->lamp.xyz), 0.0f);
     if (shadow_samples && facing > 0.0f && any(light->sun.xyz > 0.0f) &&
         is_hidden(TREE_ARGUMENTS, place, beyond_meshes(TREE_ARGUMENTS, place, light->lamp.xyz)))

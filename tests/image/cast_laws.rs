@@ -31,8 +31,13 @@ fn scene() -> Scene {
 fn light_is_smooth_along_a_core_and_past_its_end() {
     let mut renderer = Renderer::new(&device()).unwrap();
     let mut scene = scene();
-    scene.segments.push(Segment::new(v(-1.0, 0.0, 0.0), v(1.0, 0.0, 0.0)));
-    for (way, normal) in [(v(0.01, 0.0, 0.0), DVec3::Z), (v(0.01, 0.0, 0.0), -DVec3::X)] {
+    scene
+        .segments
+        .push(Segment::new(v(-1.0, 0.0, 0.0), v(1.0, 0.0, 0.0)));
+    for (way, normal) in [
+        (v(0.01, 0.0, 0.0), DVec3::Z),
+        (v(0.01, 0.0, 0.0), -DVec3::X),
+    ] {
         let points: Vec<DVec3> = (0..200)
             .map(|k| v(0.0, 0.0, -0.05) + f64::from(k) * way)
             .collect();
@@ -117,7 +122,10 @@ fn parts_of_a_core_add_up_to_it() {
         parts.curves.pop();
         parts.beams.pop();
         let less = renderer.irradiance(&parts, &points, &normals).unwrap();
-        let missing = all.iter().zip(&less).any(|(all, less)| less[0] < 0.9 * all[0]);
+        let missing = all
+            .iter()
+            .zip(&less)
+            .any(|(all, less)| less[0] < 0.9 * all[0]);
         assert!(missing, "{name}");
     }
 }
@@ -158,8 +166,14 @@ fn capsules_light_from_afar_as_cores_do() {
     // Lines without end are cut.
     scene.cylinders.push(Cylinder::new(DVec3::X));
     let capsules = proxies(&scene).unwrap();
-    let longest = capsules.iter().map(|it| it.a.distance(it.b)).fold(0.0, f64::max);
-    assert!((longest / (2.0 * scene.ray_length()) - 1.0).abs() < 1e-9, "{longest}");
+    let longest = capsules
+        .iter()
+        .map(|it| it.a.distance(it.b))
+        .fold(0.0, f64::max);
+    assert!(
+        (longest / (2.0 * scene.ray_length()) - 1.0).abs() < 1e-9,
+        "{longest}"
+    );
 }
 
 #[test]
@@ -168,7 +182,8 @@ fn what_is_asked_wrongly_is_refused() {
     scene.spheres.push(Sphere::default());
     for device in [device(), energywave::Device::reference()] {
         let mut renderer = Renderer::new(&device).unwrap();
-        let mut ask = |points: &[DVec3], normals: &[DVec3]| renderer.irradiance(&scene, points, normals);
+        let mut ask =
+            |points: &[DVec3], normals: &[DVec3]| renderer.irradiance(&scene, points, normals);
         assert_eq!(ask(&[], &[]).unwrap(), Vec::<[f32; 3]>::new());
         let (up, one) = (DVec3::Z, -2.0 * DVec3::Z);
         assert!(ask(&[one], &[5.0 * up]).unwrap()[0][0] > 0.2);

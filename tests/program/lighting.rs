@@ -6,8 +6,7 @@ use energywave::scene::{AnimatedScene, Lighting};
 
 use crate::common::program::{Folder, expect};
 
-const CAMERA: &str =
-    "[camera]\neye = [0.0, -9.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n[lighting]\n";
+const CAMERA: &str = "[camera]\neye = [0.0, -9.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n[lighting]\n";
 
 /// What follows the header in line 4; where the fault stands; words of the message.
 const BAD: &[(&str, &str, &str)] = &[
@@ -17,14 +16,42 @@ const BAD: &[(&str, &str, &str)] = &[
     ("gain = \"much\"\n", "5:8: lighting.gain", "number"),
     ("cast = 1\n", "5:8: lighting.cast", "true"),
     ("radius = 0\n", "5:10: lighting.radius", "must be positive"),
-    ("shadow_samples = 0\n", "5:18: lighting.shadow_samples", "from 1 to 1024"),
-    ("shadow_samples = 1025\n", "5:18: lighting.shadow_samples", "from 1 to 1024"),
-    ("ambient = [0, -0.1, 0]\n", "5:11: lighting.ambient", "0 or more"),
-    ("ambient = [0, 0]\n", "5:11: lighting.ambient", "expected three numbers"),
-    ("sun = { direction = [0, 0, 0] }\n", "lighting.sun.direction", "has no direction"),
-    ("sun = { direction = [0, 0, 1], color = [-1, 0, 0] }\n", "lighting.sun.color", "0 or more"),
+    (
+        "shadow_samples = 0\n",
+        "5:18: lighting.shadow_samples",
+        "from 1 to 1024",
+    ),
+    (
+        "shadow_samples = 1025\n",
+        "5:18: lighting.shadow_samples",
+        "from 1 to 1024",
+    ),
+    (
+        "ambient = [0, -0.1, 0]\n",
+        "5:11: lighting.ambient",
+        "0 or more",
+    ),
+    (
+        "ambient = [0, 0]\n",
+        "5:11: lighting.ambient",
+        "expected three numbers",
+    ),
+    (
+        "sun = { direction = [0, 0, 0] }\n",
+        "lighting.sun.direction",
+        "has no direction",
+    ),
+    (
+        "sun = { direction = [0, 0, 1], color = [-1, 0, 0] }\n",
+        "lighting.sun.color",
+        "0 or more",
+    ),
     ("sun = { color = [1, 0, 0] }\n", "lighting.sun", "direction"),
-    ("sun = { directoin = [0, 0, 1] }\n", "lighting.sun.directoin", "did you mean `direction`?"),
+    (
+        "sun = { directoin = [0, 0, 1] }\n",
+        "lighting.sun.directoin",
+        "did you mean `direction`?",
+    ),
 ];
 
 #[test]
@@ -70,9 +97,15 @@ fn it_is_read_as_it_is_written() {
                 ambient = \"#ffffff\"\nsun = { direction = [0, 1, 2] }\n";
     let found = lighting(text).unwrap();
     assert!(!found.cast && found.shadows);
-    assert_eq!((found.gain, found.radius, found.shadow_samples), (3.0, Some(0.1), 5));
+    assert_eq!(
+        (found.gain, found.radius, found.shadow_samples),
+        (3.0, Some(0.1), 5)
+    );
     let sun = found.sun.unwrap();
-    assert_eq!((found.ambient, sun.direction, sun.color), (DVec3::ONE, DVec3::new(0.0, 1.0, 2.0), DVec3::ONE));
+    assert_eq!(
+        (found.ambient, sun.direction, sun.color),
+        (DVec3::ONE, DVec3::new(0.0, 1.0, 2.0), DVec3::ONE)
+    );
 }
 
 #[test]
