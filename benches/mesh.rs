@@ -1,5 +1,5 @@
-//! Criterion benches: the tree of a million triangles, and the rays of a picture of 512x512 pixels through it, seen from
-//! another place each time: hills, whose triangles are about as large as pixels, and a ball.
+//! Criterion benches: the tree of a million triangles, and the rays of a picture of 512x512 pixels through it, seen
+//! from another place each time: hills, whose triangles are about as large as pixels, and a ball.
 //! `cargo bench --bench mesh`
 #![allow(missing_docs)] // criterion's macros make undocumented functions
 #![allow(clippy::unwrap_used)] // a bench that fails stops

@@ -8,14 +8,39 @@
 
 // A neighbour's depth may lie off the plane by this share of it, and the normals' cosine be so small, in a pixel whose
 // finer rays are not traced: then lengths are off by a quarter of that, as half a pixel is to a whole one, squared.
+#ifndef FLAT
 #define FLAT 4e-5f
 #define LEAST_COSINE 0.99f
+#endif
 
-// Returns the depth at which a ray meets the plane, of this normal, that another one meets at `depth`.
-INLINE float on_plane(const MeshSight *const sight, const float3 normal, const EyeRay *const met, const float depth,
-                      const EyeRay *const other) {
-    return sight->is_parallel ? depth + dot(normal, met->origin - other->origin) / dot(normal, met->way)
-                              : depth * (dot(normal, met->way) / dot(normal, other->way));
+// The plane of a triangle, as rays beside the one that meets it see it.
+typedef struct {
+    float3 normal;
+    float depth;             // at which that ray meets it
+    float along;             // n.w of that ray
+    float by_column, by_row; // how n.w, or of parallel rays n.o, changes from a ray to the next one
+    uint is_parallel;
+} SeenPlane;
+
+INLINE SeenPlane plane_of(const MeshSight *const sight, const float3 normal, const EyeRay *const ray,
+                          const float depth) {
+    SeenPlane plane;
+    plane.normal = normal;
+    plane.depth = depth;
+    plane.along = dot(normal, ray->way);
+    plane.by_column = sight->step_x * dot(normal, sight->right.xyz);
+    plane.by_row = sight->step_y * dot(normal, sight->down.xyz);
+    plane.is_parallel = sight->is_parallel;
+    return plane;
+}
+
+// Returns the depth at which a ray meets it that is so many rays away from that one.
+INLINE float depth_on(const SeenPlane *const plane, const float columns, const float rows) {
+    const float more = columns * plane->by_column + rows * plane->by_row;
+    if (more == 0.0f)
+        return plane->depth; // also where the ray lies in the plane
+    return plane->is_parallel ? plane->depth - more / plane->along
+                              : plane->depth * (plane->along / (plane->along + more));
 }
 
 // Returns the middle of a pixel, in rays from the first one.
@@ -51,15 +76,13 @@ __kernel void trace_pixels(TREE_PARAMETERS, const MeshSight sight, const uint fi
     }
 }
 
-// Returns whether a pixel and its neighbours see one smooth surface, or nothing.
-INLINE bool is_smooth(const MeshSight *const sight, __global const MeshTriangle *const triangles, const uint column,
-                      const uint row, __global const float *const pixel_depths,
-                      __global const uint *const pixel_triangles) {
+// Returns whether a pixel, which sees this plane, and its neighbours see one smooth surface, or nothing.
+INLINE bool is_smooth(const MeshSight *const sight, __global const MeshTriangle *const triangles,
+                      const SeenPlane *const plane, const uint column, const uint row,
+                      __global const float *const pixel_depths, __global const uint *const pixel_triangles) {
     const uint width = sight->width / sight->across, height = sight->height / sight->across;
     const uint own = pixel_triangles[row * width + column];
-    const float depth = pixel_depths[row * width + column];
-    const EyeRay met = eye_ray(sight, middle_of(sight, column), middle_of(sight, row));
-    const float3 normal = own == NOTHING ? (float3)(0.0f) : normal_of(triangles[own].normal);
+    const float scale = (float)sight->across;
     for (uint y = max(row, 1u) - 1u; y < min(row + 2u, height); ++y)
         for (uint x = max(column, 1u) - 1u; x < min(column + 2u, width); ++x) {
             const uint other = pixel_triangles[y * width + x];
@@ -67,12 +90,12 @@ INLINE bool is_smooth(const MeshSight *const sight, __global const MeshTriangle 
                 continue;
             if (other == NOTHING || own == NOTHING)
                 return false;
-            if (fabs(dot(normal, normal_of(triangles[other].normal))) < LEAST_COSINE)
-                return false;
-            const EyeRay ray = eye_ray(sight, middle_of(sight, x), middle_of(sight, y));
             const float there = pixel_depths[y * width + x];
+            const float columns = (float)((int)x - (int)column), rows = (float)((int)y - (int)row);
             // Which is false of no number, too.
-            if (!(fabs(on_plane(sight, normal, &met, depth, &ray) - there) <= FLAT * there))
+            if (!(fabs(depth_on(plane, scale * columns, scale * rows) - there) <= FLAT * there))
+                return false;
+            if (fabs(dot(plane->normal, normal_of(triangles[other].normal))) < LEAST_COSINE)
                 return false;
         }
     return true;
@@ -99,11 +122,11 @@ __kernel void trace_rays(TREE_PARAMETERS, const MeshSight sight, const uint firs
         return;
     const uint width = sight.width / sight.across, column = pixel % width, row = pixel / width;
     const uint own = pixel_triangles[pixel], count = sight.across * sight.across;
-    const float depth = pixel_depths[pixel];
-    const bool is_flat =
-        sight.across == 1u || is_smooth(&sight, tree_triangles, column, row, pixel_depths, pixel_triangles);
     const EyeRay middle = eye_ray(&sight, middle_of(&sight, column), middle_of(&sight, row));
     const float3 normal = own == NOTHING ? (float3)(0.0f) : normal_of(tree_triangles[own].normal);
+    const SeenPlane plane = plane_of(&sight, normal, &middle, pixel_depths[pixel]);
+    const bool is_flat =
+        sight.across == 1u || is_smooth(&sight, tree_triangles, &plane, column, row, pixel_depths, pixel_triangles);
     float met[LANES], found[LANES];
     for (uint part = 0u; part < count; ++part) {
         const uint lane = part % LANES;
@@ -118,10 +141,8 @@ __kernel void trace_rays(TREE_PARAMETERS, const MeshSight sight, const uint firs
         const uint x = column * sight.across + part % sight.across, y = row * sight.across + part / sight.across;
         const EyeRay ray = eye_ray(&sight, (float)x, (float)y);
         const float longer = length(ray.way);
-        const float there = !is_flat             ? met[lane]
-                            : own == NOTHING     ? INFINITY
-                            : sight.across == 1u ? depth
-                                                 : on_plane(&sight, normal, &middle, depth, &ray);
+        const float columns = (float)x - middle_of(&sight, column), rows = (float)y - middle_of(&sight, row);
+        const float there = !is_flat ? met[lane] : own == NOTHING ? INFINITY : depth_on(&plane, columns, rows);
         const float own_length = there * longer, given = given_length(&sight, depths, x, y, longer);
         const uint triangle = is_flat ? own : as_uint(found[lane]);
         const bool is_seen = triangle != NOTHING && own_length < given;

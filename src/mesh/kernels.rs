@@ -70,7 +70,8 @@ pub(crate) fn build_text(
     options: &RendererOptions,
 ) -> Result<Program> {
     let text = sources().resolve_text(name, text);
-    Program::build(compute, text, &pack::definitions(), options)
+    let definitions = pack::definitions() + &light::definitions();
+    Program::build(compute, text, &definitions, options)
 }
 
 /// Launches a kernel over so many work-items, which it counts from `first` to `end` by these names.

@@ -77,8 +77,8 @@ fn difference(scene: &Scene, lengths: &[f32], light: &[f32]) -> Option<String> {
         let is_lit = light[4 * pixel] > 0.0 || !found.is_finite();
         if !is_right || !is_lit {
             return Some(format!(
-                "the length of ray {index} up to a square is {found}, with light {}, and should be {expected}, {beside} \
-                 of the way from its middle to its edge",
+                "the length of ray {index} up to a square is {found}, with light {}, and should be {expected}, at \
+                 {beside} of the way from its middle to its edge",
                 light[4 * pixel]
             ));
         }

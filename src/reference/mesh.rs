@@ -282,8 +282,8 @@ impl TracedMeshes {
         })
     }
 
-    /// Returns the mean radiance of each pixel's rays that come so far, RGBA by rows: ambient, and by Lambert's law that
-    /// of the lamp that lights metaballs.
+    /// Returns the mean radiance of each pixel's rays that come so far, RGBA by rows: ambient, and by Lambert's law
+    /// that of the lamp that lights metaballs.
     pub(crate) fn light(&self, scene: &Scene, ends: &DepthImage) -> Vec<f32> {
         let across = (ends.size().width / scene.image.width) as usize;
         let (_, plane) = scene.ray_grid(across as u32);

@@ -4,8 +4,8 @@
 use crate::common;
 use energywave::internals::pack::layout::STRUCTS;
 use energywave::internals::{
-    self, BloomStep, DeviceBuffer, DeviceStruct, GLOW_STRUCTS, KINDS, METABALL_STRUCTS,
-    StoredDepths, StructLayout, host_depth_definitions,
+    self, BloomStep, DeviceBuffer, DeviceStruct, GLOW_STRUCTS, KINDS, LIGHT_STRUCTS, MESH_STRUCTS,
+    METABALL_STRUCTS, StoredDepths, StructLayout, host_depth_definitions,
 };
 
 const BLOOM_STEP: StructLayout = BloomStep::LAYOUT;
@@ -41,11 +41,21 @@ fn is_of_glow(layout: &StructLayout) -> bool {
     GLOW_STRUCTS.iter().any(|it| it.name == layout.name)
 }
 
+fn is_of_light(layout: &StructLayout) -> bool {
+    LIGHT_STRUCTS.iter().any(|it| it.name == layout.name)
+}
+
+fn is_of_meshes(layout: &StructLayout) -> bool {
+    MESH_STRUCTS.iter().any(|it| it.name == layout.name)
+}
+
 fn words_by_name(layout: &StructLayout) -> Vec<u32> {
     let files = match () {
         () if layout.name == BLOOM_STEP.name => "#include \"film.h\"\n#include \"bloom/step.h\"\n",
         () if is_of_metaballs(layout) => "#include \"metaball/types.h\"\n",
         () if is_of_glow(layout) => "#include \"glow/types.h\"\n",
+        () if is_of_light(layout) => "#include \"light/types.h\"\n",
+        () if is_of_meshes(layout) => "#include \"mesh/types.h\"\n",
         () => FILES,
     };
     words_of(layout, files, "")
@@ -72,6 +82,9 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
             internals::build_metaball_text(&compute, name, &text, &options)
         }
         () if is_of_glow(layout) => internals::build_glow_text(&compute, name, &text, &options),
+        () if is_of_meshes(layout) || is_of_light(layout) => {
+            internals::build_mesh_text(&compute, name, &text, &options)
+        }
         () => internals::build_text(&compute, name, &text, &KINDS, &options),
     }
     .unwrap();
@@ -99,6 +112,8 @@ fn the_device_finds_every_field_where_the_host_put_it() {
         .chain([&BLOOM_STEP])
         .chain(METABALL_STRUCTS)
         .chain(GLOW_STRUCTS)
+        .chain(MESH_STRUCTS)
+        .chain(LIGHT_STRUCTS)
     {
         let expected: Vec<u32> = (1..=layout.size as u32 / 4).collect();
         assert_eq!(words_by_name(layout), expected, "{}", layout.name);

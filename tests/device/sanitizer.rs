@@ -4,11 +4,12 @@
 
 use crate::common;
 use crate::common::host::Host;
+use crate::common::meshes::ball;
 use energywave::image::{Bloom, DepthAlong};
 use energywave::internals::see_surfaces;
 use energywave::scene::{
-    Decay, LightElement, MetaballKernel, MetaballMethod, MetaballSampling, Metaballs, Method,
-    Particles, PointList, Profile,
+    Antialias, Decay, LightElement, MetaballKernel, MetaballMethod, MetaballSampling, Metaballs,
+    Method, Particles, PointList, Profile,
 };
 use energywave::verify::built_in_rays;
 use energywave::{HostDepth, HostDepthMemory, RadianceImage, Renderer, RendererOptions, Scene};
@@ -284,6 +285,23 @@ fn surfaces_are_found_within_the_memory_that_there_is() {
             let (lengths, _) = see_surfaces(&mut renderer, &scene).unwrap();
             assert_eq!(lengths.len(), 21 * 13);
             assert!(lengths.iter().any(|length| length.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn meshes_are_met_within_the_memory_that_there_is() {
+    let device = common::device();
+    let widths = common::lane_widths().into_iter();
+    for lanes in widths.filter(|lanes| is_simulator() || *lanes == device.lanes) {
+        let mut scene = common::empty_scene(21, 10);
+        scene.meshes.push(ball(6));
+        for antialias in [Antialias::None, Antialias::Footprint] {
+            scene.integration.antialias = antialias;
+            let mut renderer = common::renderer(lanes, "");
+            let image = renderer.render(&scene).unwrap();
+            assert!(image.as_slice().iter().all(|value| value.is_finite()));
+            assert!(image.as_slice().chunks(4).any(|pixel| pixel[0] > 0.1));
         }
     }
 }

@@ -121,6 +121,11 @@ fn lengths_are_the_same_on_every_lane_width_and_open_edges_lose_rays() {
     }
     let spoiled = off(&mut renderer("-DOPEN_EDGES"), &facing_square());
     assert!(spoiled > BESIDE, "the spoiled build passed: {spoiled}");
+    // Planes in the place of curved surfaces.
+    let mut smooth = placed_balls(30);
+    smooth.integration.antialias = Antialias::Footprint;
+    let spoiled = off(&mut renderer("-DFLAT=1.0f -DLEAST_COSINE=0.0f"), &smooth);
+    assert!(spoiled > BESIDE, "the spoiled build passed: {spoiled}");
 }
 
 #[test]

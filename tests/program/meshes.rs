@@ -187,7 +187,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ),
     (
         "TRIANGLE file = \"a.obj\"\n",
-        "7:9: mesh[0].file",
+        "7:8: mesh[0].file",
         "say already what the mesh is",
     ),
     (

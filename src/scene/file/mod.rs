@@ -220,6 +220,13 @@ pub(super) fn raw_fault(text: &str) -> Option<String> {
     Some(fault.message().to_owned())
 }
 
+/// Lets tables take what those before them have read.
+fn shared<T>(mut new: Vec<T>, old: &[T], share: fn(&mut T, &T)) -> Vec<T> {
+    let pairs = new.iter_mut().zip(old);
+    pairs.for_each(|(new, old)| share(new, old));
+    new
+}
+
 fn is_empty<T>(list: &List<T>) -> bool {
     list.len() == 0
 }
@@ -244,21 +251,9 @@ impl SceneFile {
         self.simulation = other.simulation;
         self.wave = other.wave;
         self.collider = other.collider;
-        let mut mesh = other.mesh;
-        for (new, old) in mesh.iter_mut().zip(&self.mesh) {
-            new.share(old);
-        }
-        self.mesh = mesh;
-        let mut metaballs = other.metaballs;
-        for (new, old) in metaballs.iter_mut().zip(&self.metaballs) {
-            new.share(old);
-        }
-        self.metaballs = metaballs;
-        let mut particles = other.particles;
-        for (new, old) in particles.iter_mut().zip(&self.particles) {
-            new.share(old);
-        }
-        self.particles = particles;
+        self.mesh = shared(other.mesh, &self.mesh, MeshTable::share);
+        self.metaballs = shared(other.metaballs, &self.metaballs, MetaballsTable::share);
+        self.particles = shared(other.particles, &self.particles, ParticlesTable::share);
     }
 
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.

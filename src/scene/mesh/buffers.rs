@@ -4,10 +4,11 @@
 use std::borrow::Cow;
 use std::fs;
 use std::path::Path;
+use std::slice::Chunks;
 
-use ::gltf::accessor::{DataType, Dimensions};
-use ::gltf::buffer::Source;
-use ::gltf::{Accessor, Document};
+use ::gltf::json::accessor::{ComponentType, GenericComponentType, Type};
+use ::gltf::json::validation::{Checked, USize64};
+use ::gltf::json::{Index, Root};
 use glam::Vec3;
 
 use crate::shown::shown;
@@ -15,100 +16,136 @@ use crate::shown::shown;
 /// What a text begins with that stands in the place of a file.
 pub(super) const DATA: &str = "data:";
 
-/// The bytes of all buffers.
-pub(super) struct Buffers<'a>(Vec<Cow<'a, [u8]>>);
+/// The bytes of all buffers of a document.
+pub(super) struct Buffers<'a> {
+    document: &'a Root,
+    bytes: Vec<Cow<'a, [u8]>>,
+}
 
-impl Buffers<'_> {
-    /// Reads the buffers of a document; `blob` is what a binary file has, and others lie in the folder.
+impl<'a> Buffers<'a> {
+    /// Reads the buffers of a document; `binary` is what a binary file has, and others lie in the folder.
     pub(super) fn open(
-        document: &Document,
-        mut blob: Option<Vec<u8>>,
+        document: &'a Root,
+        mut binary: Option<&'a [u8]>,
         folder: &Path,
     ) -> Result<Self, String> {
-        let mut buffers = Vec::new();
-        for buffer in document.buffers() {
-            let name = format!(": buffer {}", buffer.index());
-            let bytes = match buffer.source() {
-                Source::Bin => blob
-                    .take()
-                    .ok_or_else(|| format!("{name}: the file has no binary part"))?,
-                Source::Uri(uri) if uri.starts_with(DATA) => {
+        let mut all = Vec::new();
+        for (number, buffer) in document.buffers.iter().enumerate() {
+            let name = format!(": buffer {number}");
+            let bytes = match buffer.uri.as_deref() {
+                None => {
+                    let bytes = binary.take().map(Cow::Borrowed);
+                    bytes.ok_or_else(|| format!("{name}: the file has no binary part"))?
+                }
+                Some(uri) if uri.starts_with(DATA) => {
                     let text = uri.split_once(";base64,").map(|(_, text)| text);
                     let bytes = text.and_then(|text| base64(text.as_bytes()));
-                    bytes.ok_or_else(|| format!("{name}: it is no base64"))?
+                    Cow::Owned(bytes.ok_or_else(|| format!("{name}: it is no base64"))?)
                 }
-                Source::Uri(uri) => {
-                    let path = folder.join(plain(uri));
-                    let shown_name = shown(uri);
-                    fs::read(&path)
-                        .map_err(|error| format!("{name}: cannot read {shown_name}: {error}"))?
+                Some(uri) => {
+                    let bytes = fs::read(folder.join(plain(uri)));
+                    let told = |error| format!("{name}: cannot read {}: {error}", shown(uri));
+                    Cow::Owned(bytes.map_err(told)?)
                 }
             };
-            if bytes.len() < buffer.length() {
-                let (found, wanted) = (bytes.len(), buffer.length());
+            let (found, wanted) = (bytes.len() as u64, buffer.byte_length.0);
+            if found < wanted {
                 return Err(format!(
                     "{name} has {found} bytes, and should have {wanted}"
                 ));
             }
-            buffers.push(Cow::Owned(bytes));
+            all.push(bytes);
         }
-        Ok(Self(buffers))
+        Ok(Self {
+            document,
+            bytes: all,
+        })
     }
 
-    /// Returns the values of an accessor: where each begins, all of them as long as one.
-    fn values(&self, accessor: &Accessor<'_>) -> Result<impl Iterator<Item = &[u8]>, String> {
-        let name = format!("accessor {}", accessor.index());
-        if accessor.sparse().is_some() {
+    /// Returns the values of an accessor, each of `parts` numbers: their type, and the bytes of each.
+    fn values(&self, number: usize, parts: Type) -> Result<Values<'_>, String> {
+        let name = format!("accessor {number}");
+        let accessor = self.document.accessors.get(number);
+        let accessor = accessor.ok_or_else(|| format!("there is no {name}"))?;
+        if accessor.sparse.is_some() {
             return Err(format!(
                 "{name} is sparse, which is not read; export it otherwise"
             ));
         }
-        let Some(view) = accessor.view() else {
-            return Err(format!("{name} has no buffer"));
+        let (Checked::Valid(GenericComponentType(component)), Checked::Valid(found)) =
+            (accessor.component_type, accessor.type_)
+        else {
+            return Err(format!("{name} has no known type"));
         };
-        let size = accessor.size();
-        let stride = view.stride().unwrap_or(size).max(1);
+        if found != parts {
+            return Err(format!("{name} has {found:?}, and should have {parts:?}"));
+        }
+        let view = accessor.buffer_view.as_ref().map(Index::value);
+        let view = view.and_then(|view| self.document.buffer_views.get(view));
+        let view = view.ok_or_else(|| format!("{name} has no buffer"))?;
+        let bytes = self.bytes.get(view.buffer.value());
+        let bytes = bytes.map_or(&[][..], |it| it);
+        let size = component.size() * parts.multiplicity();
+        let stride = view.byte_stride.map_or(size, |it| it.0);
         if stride < size {
             return Err(format!("{name} has values that lie in each other"));
         }
-        let cut = |bytes: &'_ [u8]| -> Option<(usize, usize)> {
-            let begin = view.offset().checked_add(accessor.offset())?;
-            let end = view.offset().checked_add(view.length())?.min(bytes.len());
-            let last = accessor.count().checked_sub(1)?.checked_mul(stride)?;
-            let needed = begin.checked_add(last)?.checked_add(size)?;
-            (needed <= end).then_some((begin, needed))
+        let cut = || -> Option<&[u8]> {
+            let place = |it: Option<USize64>| usize::try_from(it.map_or(0, |it| it.0)).ok();
+            let (begin, length) = (place(view.byte_offset)?, place(Some(view.byte_length))?);
+            let inside = bytes.get(begin..begin.checked_add(length)?)?;
+            let last = place(Some(accessor.count))?.checked_sub(1)?;
+            let begin = place(accessor.byte_offset)?;
+            let end = begin.checked_add(last.checked_mul(stride)?)?;
+            inside.get(begin..end.checked_add(size)?)
         };
-        let bytes = self.0.get(view.buffer().index()).map_or(&[][..], |it| it);
-        let (begin, end) = cut(bytes)
-            .ok_or_else(|| format!("{name} reaches beyond its buffer, or has nothing"))?;
-        let values = bytes[begin..end].chunks(stride);
-        Ok(values.map(move |value| &value[..size.min(value.len())]))
+        let values =
+            cut().ok_or_else(|| format!("{name} reaches beyond its buffer, or has nothing"))?;
+        Ok(Values {
+            component,
+            size,
+            chunks: values.chunks(stride),
+        })
     }
 
     /// Reads float32 vectors.
-    pub(super) fn positions(&self, accessor: &Accessor<'_>) -> Result<Vec<Vec3>, String> {
-        if (accessor.data_type(), accessor.dimensions()) != (DataType::F32, Dimensions::Vec3) {
-            return Err("its positions are no vectors of three float32".to_owned());
+    pub(super) fn positions(&self, accessor: usize) -> Result<Vec<Vec3>, String> {
+        let values = self.values(accessor, Type::Vec3)?;
+        if values.component != ComponentType::F32 {
+            return Err("its positions are no float32".to_owned());
         }
-        let float = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-        let vector = |it: &[u8]| Vec3::new(float(&it[..4]), float(&it[4..8]), float(&it[8..12]));
-        Ok(self.values(accessor)?.map(vector).collect())
+        let vector = |bytes: &[u8]| {
+            let floats = bytes.as_chunks::<4>().0;
+            Vec3::from_array([0, 1, 2].map(|axis| f32::from_le_bytes(floats[axis])))
+        };
+        Ok(values.each().map(vector).collect())
     }
 
     /// Reads whole numbers of 8, 16 or 32 bits.
-    pub(super) fn indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, String> {
-        let is_whole = matches!(
-            accessor.data_type(),
-            DataType::U8 | DataType::U16 | DataType::U32
-        );
-        if !is_whole || accessor.dimensions() != Dimensions::Scalar {
+    pub(super) fn indices(&self, accessor: usize) -> Result<Vec<u32>, String> {
+        let values = self.values(accessor, Type::Scalar)?;
+        let (small, large) = (ComponentType::U8, ComponentType::U32);
+        if ![small, ComponentType::U16, large].contains(&values.component) {
             return Err("its indices are no whole numbers".to_owned());
         }
         let number = |bytes: &[u8]| {
             let digits = bytes.iter().rev();
             digits.fold(0, |sum, digit| sum << 8 | u32::from(*digit))
         };
-        Ok(self.values(accessor)?.map(number).collect())
+        Ok(values.each().map(number).collect())
+    }
+}
+
+/// The values of an accessor.
+struct Values<'a> {
+    component: ComponentType,
+    size: usize,
+    chunks: Chunks<'a, u8>,
+}
+
+impl<'a> Values<'a> {
+    fn each(self) -> impl Iterator<Item = &'a [u8]> {
+        self.chunks.map(move |chunk| &chunk[..self.size]) // the last one has no more
     }
 }
 
