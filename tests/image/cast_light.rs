@@ -386,10 +386,10 @@ fn random_sum(case: &Case, point: DVec3, normal: DVec3) -> (DVec3, DVec3, f64) {
 }
 
 /// Returns the errors of found light, relative to what is expected, dark places aside.
-fn errors(found: &[[f32; 3]], expected: &[DVec3], facing: &[f64]) -> Vec<f64> {
+fn errors(found: &[[f32; 3]], expected: &[DVec3], facing: &[f64], dark: f64) -> Vec<f64> {
     let error = |((found, expected), facing): ((&[f32; 3], &DVec3), &f64)| {
         let found = DVec3::from(found.map(f64::from));
-        let off = (found - *expected).abs() - DVec3::splat(DARK * facing);
+        let off = (found - *expected).abs() - DVec3::splat(dark * facing);
         (off / expected.max(DVec3::splat(1e-30)))
             .max_element()
             .max(0.0)
@@ -420,20 +420,23 @@ fn every_core_casts_the_light_of_its_places() {
         let found = on_device
             .irradiance(&case.scene, &points, &normals)
             .unwrap();
-        let of_sums = errors(&found, &expected, &facing);
+        let of_sums = errors(&found, &expected, &facing, DARK);
         let truth = reference::irradiance(&case.scene, &points, &normals).unwrap();
         let truth: Vec<DVec3> = truth.into_iter().map(DVec3::from).collect();
-        let of_truth = errors(&found, &truth, &facing);
+        let of_truth = errors(&found, &truth, &facing, DARK);
+        let mut fine = errors(&found, &truth, &facing, 0.01 * DARK);
+        fine.sort_by(f64::total_cmp);
         let mut sorted = of_truth.clone();
         sorted.sort_by(f64::total_cmp);
         let single: Vec<[f32; 3]> = truth.iter().map(|it| it.as_vec3().to_array()).collect();
-        let reference_off = worst(&errors(&single, &expected, &facing));
+        let reference_off = worst(&errors(&single, &expected, &facing, DARK));
         println!(
             "{}: off random sums by {:.1e}, the reference by {reference_off:.1e}; off the reference by {:.1e} in the \
-             middle, {:.1e} of 99 in 100, {:.1e} at most",
+             middle, {:.1e} of 95 in 100, and by {:.1e} of 99, {:.1e} at most, but for what is dark",
             case.name,
             worst(&of_sums),
-            sorted[POINTS / 2],
+            fine[POINTS / 2],
+            fine[POINTS * 95 / 100 - 1],
             sorted[POINTS * 99 / 100 - 1],
             worst(&of_truth)
         );
@@ -446,8 +449,12 @@ fn every_core_casts_the_light_of_its_places() {
         );
         for (spoil, spoiled) in &mut spoiled {
             let found = spoiled.irradiance(&case.scene, &points, &normals).unwrap();
-            let off = worst(&errors(&found, &expected, &facing));
-            assert!(!(off < MOST), "{}, {spoil}: {off:.1e}", case.name);
+            let off = worst(&errors(&found, &expected, &facing, DARK));
+            assert!(
+                off >= MOST || off.is_nan(),
+                "{}, {spoil}: {off:.1e}",
+                case.name
+            );
         }
     }
 }

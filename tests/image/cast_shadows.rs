@@ -8,9 +8,9 @@ use glam::DVec3;
 
 use super::common::{device, meshes};
 
-/// The bars of 16 pieces, relative to the light without shadows: in the mean over penumbrae, and at worst.
-const MEAN: f64 = 0.025;
-const WORST: f64 = 0.12;
+/// What 16 pieces leave, relative to the light without shadows: in the mean over penumbrae, and at worst.
+const MEAN: f64 = 0.014;
+const WORST: f64 = 0.056;
 
 /// What float32 leaves of light that nothing hides.
 const EXACT: f64 = 2e-3;
