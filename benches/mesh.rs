@@ -54,7 +54,12 @@ fn meshes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("mesh");
     group.sample_size(10);
     for (name, mesh) in [("hills", hills()), ("ball", ball())] {
-        println!("{} triangles", mesh.triangles.len());
+        let tree = Tree::new(std::slice::from_ref(&mesh)).unwrap();
+        println!(
+            "{} triangles, {} boxes",
+            tree.triangles.len(),
+            tree.nodes.len()
+        );
         group.bench_function(BenchmarkId::new("tree", name), |bencher| {
             bencher.iter(|| black_box(Tree::new(std::slice::from_ref(&mesh)).unwrap()));
         });

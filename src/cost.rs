@@ -8,6 +8,8 @@ use std::time::Duration;
 pub struct FrameCost {
     /// Time that the device worked on kernels; of several devices, the longest.
     pub kernel: Duration,
+    /// The part of that which meshes took: what rays meet of them, if that was not kept, and their light.
+    pub meshes: Duration,
     /// Integrals: pairs of a ray and a source.
     pub integrals: u64,
     /// Samples of fields. 0 where they were not counted: the method `exact` takes as many as it needs and counts them
@@ -22,6 +24,7 @@ impl FrameCost {
     pub(crate) fn then(self, other: Self) -> Self {
         Self {
             kernel: self.kernel + other.kernel,
+            meshes: self.meshes + other.meshes,
             ..self.beside(other)
         }
     }
@@ -30,6 +33,7 @@ impl FrameCost {
     pub(crate) fn beside(self, other: Self) -> Self {
         Self {
             kernel: self.kernel.max(other.kernel),
+            meshes: self.meshes.max(other.meshes),
             integrals: self.integrals + other.integrals,
             samples: self.samples + other.samples,
             launches: self.launches + other.launches,

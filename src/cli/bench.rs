@@ -72,6 +72,8 @@ struct SceneSpeed {
     sampling: Sampling,
     fps: f64,
     kernel_ms: f64,
+    /// Of the last frame.
+    mesh_ms: f64,
     evaluations: u64,
     field_evaluations: u64,
     frame: u32,
@@ -258,6 +260,7 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
         sampling: scene.sampling(),
         fps: speed.fps,
         kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
+        mesh_ms: 1e3 * speed.cost.meshes.as_secs_f64(),
         evaluations: cost.integrals,
         field_evaluations: cost.samples,
         frame: speed.frame,
@@ -268,8 +271,12 @@ fn bench_scene(arguments: &BenchArguments, path: &Path) -> Outcome {
     if !arguments.data.is_text() {
         return arguments.data.print_one(&record);
     }
+    let of_meshes = match scene.meshes.is_empty() {
+        true => String::new(),
+        false => format!(" (the last one {:.3} ms for meshes)", record.mesh_ms),
+    };
     print(&format!(
-        "{}: {:.2} frames a second at {}x{}, {:.3} ms in kernels; {} integrals, {} samples a frame\n",
+        "{}: {:.2} frames a second at {}x{}, {:.3} ms in kernels{of_meshes}; {} integrals, {} samples a frame\n",
         shown(&record.scene),
         record.fps,
         record.width,

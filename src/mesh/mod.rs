@@ -221,7 +221,10 @@ impl Meshes {
         let mut outcome = Ok(());
         for event in self.under_way.drain(..) {
             match run_time(compute, &event) {
-                Ok(time) => self.cost.kernel += time,
+                Ok(time) => {
+                    self.cost.kernel += time;
+                    self.cost.meshes += time;
+                }
                 Err(error) => outcome = outcome.and(Err(error)),
             }
             self.cost.launches += 1;

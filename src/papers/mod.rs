@@ -229,12 +229,14 @@ pub fn exact_cost(device: &Device, scene: &Scene) -> Result<FrameCost> {
         sum.integrals += cost.integrals;
         sum.samples += cost.samples;
         sum.kernel += cost.kernel;
+        sum.meshes += cost.meshes;
         sum.launches += cost.launches;
     }
     Ok(FrameCost {
         integrals: sum.integrals / u64::from(COUNTED_FRAMES),
         samples: sum.samples / u64::from(COUNTED_FRAMES),
         kernel: sum.kernel / COUNTED_FRAMES,
+        meshes: sum.meshes / COUNTED_FRAMES,
         launches: sum.launches / COUNTED_FRAMES,
     })
 }

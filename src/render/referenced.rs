@@ -46,6 +46,7 @@ pub(super) fn reference_cost(scene: &Scene, pixels: usize, time: Duration) -> Fr
     let samples = scene.integration.method.samples().unwrap_or(0);
     FrameCost {
         kernel: time,
+        meshes: Duration::ZERO,
         integrals,
         samples: integrals * u64::from(samples),
         launches: 1,

@@ -68,7 +68,8 @@ fn off(renderer: &mut Renderer, scene: &Scene) -> usize {
     let is_off = |(found, ray): &(&f32, &energywave::internals::MeshRay)| {
         let found = f64::from(**found);
         let is_same = !found.is_finite() && !ray.length.is_finite();
-        !is_same && !((found / ray.length - 1.0).abs() <= LENGTH_ERROR)
+        let is_close = (found / ray.length - 1.0).abs() <= LENGTH_ERROR;
+        !(is_same || is_close)
     };
     let count = pairs.filter(is_off).count();
     (1000 * count).div_ceil(lengths.len())
