@@ -44,8 +44,8 @@ impl Lights {
         }
     }
 
-    /// Makes the device's lights those of a valid scene that is lit so, places relative to `origin`, world space, before
-    /// the next command of the queue begins; without a lighting, none.
+    /// Makes the device's lights those of a valid scene that is lit so, places relative to `origin`, world space,
+    /// before the next command of the queue begins; without a lighting, none.
     ///
     /// # Errors
     /// As [`Uploaded::upload`].

@@ -15,9 +15,10 @@ pub(crate) use sources::LIGHT_FILES;
 
 use glam::DVec3;
 
+use crate::Device;
+use crate::Renderer;
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::{Device, Renderer};
 
 /// Returns the irradiance, linear RGB, of points of surfaces with these normals, of any length but zero, as the best
 /// device finds it: see [`Renderer::irradiance`], which keeps what it built.
