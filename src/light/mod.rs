@@ -1,8 +1,8 @@
 //! The light that waves cast on surfaces.
 //!
-//! Cores emit light evenly in all directions, a point its intensity I, every other core one per length, I': a place P of
-//! a surface with the normal n has the irradiance `integral over all cores of I' max(0, n.y) / |y|^3`, y from P to the
-//! core. [`Lighting`](crate::scene::Lighting) says how; what intensity a coefficient stands for, docs/method.md.
+//! Cores emit light evenly in all directions, a point its intensity I, every other core one per length, I': a place P
+//! of a surface with the normal n has the irradiance `integral over all cores of I' max(0, n.y) / |y|^3`, y from P to
+//! the core. [`Lighting`](crate::scene::Lighting) says how; what intensity a coefficient stands for, docs/method.md.
 
 mod lights;
 pub(crate) mod pack;

@@ -29,9 +29,9 @@ const OF_CURVE: u32 = 8;
 const OF_LINE: u32 = 4;
 
 /// Returns capsules in the place of what casts light in a scene: their intensities add up to that of each core. Circles
-/// are 24 of them, curves 8 a piece, a line along which light changes 4 between two of its values. Lines without end are
-/// cut at the length of the scene's view rays from their begin or, where they have none, from the point nearest to the
-/// camera's target.
+/// are 24 of them, curves 8 a piece, a line along which light changes 4 between two of its values. Lines without end
+/// are cut at the length of the scene's view rays from their begin or, where they have none, from the point nearest to
+/// the camera's target.
 ///
 /// # Errors
 /// [`Error::Scene`](crate::Error::Scene) if the scene is not valid.

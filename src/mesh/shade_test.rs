@@ -1,5 +1,5 @@
-//! The first use of the freshly built kernels of light: a source of every kind, whose light the reference integrates by another
-//! method. Some drivers miscompile kernels.
+//! The first use of the freshly built kernels of light: a source of every kind, whose light the reference integrates by
+//! another method. Some drivers miscompile kernels.
 
 use glam::DVec3;
 

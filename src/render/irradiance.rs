@@ -27,7 +27,8 @@ impl Renderer {
     /// Returns the irradiance, linear RGB, of points of surfaces with these normals, of any length but zero: what the
     /// cores of a scene's waves cast on them, by its [`Lighting`](crate::scene::Lighting), or by the default where it
     /// has none; with shadows, what its meshes leave of that. A matt surface of the albedo a then has the radiance
-    /// `a / pi` times that. Ambient light and a sun play no part, nor do particles. Of several devices the first does it.
+    /// `a / pi` times that. Ambient light and a sun play no part, nor do particles. Of several devices the first does
+    /// it.
     ///
     /// Float32 finds it within 1e-2 of the integral, as a rule within 1e-4: what is worst are circles and curves that
     /// the horizon of a near surface cuts.

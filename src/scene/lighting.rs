@@ -56,7 +56,8 @@ keys! { pub(super) LIGHTING_KEYS;
     gain: NOT_NEGATIVE, NONE, Value("1"), "what their light on meshes is multiplied with";
     radius: POSITIVE, WORLD, Otherwise("a thousandth of the core's size"), "how near to a core its light grows no more";
     shadows: Flag, NONE, Value("false"), "whether meshes cast shadows";
-    shadow_samples: Whole(1, MOST_SAMPLES), NONE, Value("16"), "pieces of a core that are tested for whether they are seen";
+    shadow_samples: Whole(1, MOST_SAMPLES), NONE, Value("16"),
+        "pieces of a core that are tested for whether they are seen";
     ambient: Color, "linear RGB", Value("[0, 0, 0]"), "light from everywhere";
     sun: Table("sun"), NONE, Otherwise("none"), "a light from one direction";
 }

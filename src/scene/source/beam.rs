@@ -4,7 +4,8 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Brightness, Core, Falloff, HasLight, Light, Placement, Profile, Shared, SourceKind, emissions_along, source, source_struct,
+    Brightness, Core, Falloff, HasLight, Light, Placement, Profile, Shared, SourceKind, emissions_along, source,
+    source_struct,
 };
 use crate::scene::chain::{LitChain, Piece, Run};
 use crate::scene::emitter::{AddEmitter, EmitterCore, add_even, emission};

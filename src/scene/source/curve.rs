@@ -3,7 +3,9 @@
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{Brightness, Core, Falloff, HasLight, Placement, Profile, SourceKind, emissions_along, item, source, source_struct};
+use super::{
+    Brightness, Core, Falloff, HasLight, Placement, Profile, SourceKind, emissions_along, item, source, source_struct,
+};
 use crate::scene::Dashes;
 use crate::scene::chain::{Along, LitChain, Piece, Run};
 use crate::scene::emitter::{AddEmitter, EmitterCore, add_even, emission};
