@@ -1,5 +1,5 @@
-//! Holds what meshes leave of the light that waves cast to the reference, which asks of every place of a core whether it
-//! is seen.
+//! Holds what meshes leave of the light that waves cast to the reference, which asks of every place of a core whether
+//! it is seen.
 
 use energywave::image::ImageSize;
 use energywave::scene::{Camera, Curve, Lighting, Mesh, Segment, Sphere, Sun, Torus, TriangleList};
