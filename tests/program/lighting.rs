@@ -14,7 +14,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ("gain = -1\n", "5:8: lighting.gain", "0 or more; found -1"),
     ("gain = nan\n", "5:8: lighting.gain", "not a finite number"),
     ("gain = \"much\"\n", "5:8: lighting.gain", "number"),
-    ("cast = 1\n", "5:8: lighting.cast", "true"),
+    ("cast = 1\n", "5:8: lighting.cast", "boolean"),
     ("radius = 0\n", "5:10: lighting.radius", "must be positive"),
     (
         "shadow_samples = 0\n",
