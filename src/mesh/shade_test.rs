@@ -60,9 +60,9 @@ pub(super) fn shade_test(
     let expected = reference::irradiance(&scene, &points, &normals)?;
     for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
         let most = expected.iter().copied().fold(0.0, f64::max);
-        let off = found.iter().zip(expected);
+        let mut pairs = found.iter().zip(expected);
         let is_right = |(a, b): (&f32, f64)| (f64::from(*a) - b).abs() <= LIMIT * most;
-        if !off.map(is_right).all(|is_right| is_right) {
+        if !pairs.all(is_right) {
             let device = compute.device();
             return Err(Error::SelfTest {
                 device: device.name.clone(),

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::chain::{LitChain, Piece, Run, series_at};
 use super::kinds::for_each_kind;
-use super::source::{Core, Falloff, HasLight, Light, SourceKind};
+use super::source::{Core, Falloff, Light, SourceKind};
 use super::{Lighting, Scene};
 
 /// Where a part of a core is.
@@ -97,7 +97,7 @@ pub(crate) fn emission(
 }
 
 /// Adds the emitters of a source whose light is the same all along its core, unless it is drawn as chains.
-pub(super) fn add_even(source: &(impl SourceKind + HasLight), add: AddEmitter<'_>) {
+pub(super) fn add_even(source: &impl SourceKind, add: AddEmitter<'_>) {
     if let Some(chains) = source.as_chains() {
         chains.iter().for_each(|lit| lit.for_each_emitter(add));
         return;
