@@ -8,6 +8,7 @@ use std::time::Duration;
 
 pub use crate::bloom::{BloomStep, Spreader};
 pub use crate::glow::pack::STRUCTS as GLOW_STRUCTS;
+pub use crate::light::pack::STRUCTS as LIGHT_STRUCTS;
 pub use crate::mesh::pack::STRUCTS as MESH_STRUCTS;
 pub use crate::mesh::{Tree, UploadedTree};
 pub use crate::metaball::pack::STRUCTS as METABALL_STRUCTS;

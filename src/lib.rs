@@ -53,6 +53,7 @@ mod glow;
 pub mod image;
 #[doc(hidden)]
 pub mod internals;
+pub mod light;
 mod memory;
 mod mesh;
 mod metaball;

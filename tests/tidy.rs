@@ -60,14 +60,17 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 14] = [
+const LAYERS: [(&str, &[&str]); 15] = [
     ("image", &[]),
     ("volume", &["image"]),
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
     ("glow", &["image", "opencl", "scene"]),
-    ("mesh", &["image", "opencl", "scene"]),
+    // The self-test of light compares with the reference.
+    ("mesh", &["image", "opencl", "scene", "light", "reference"]),
     ("metaball", &["image", "opencl", "scene"]),
+    // One function is the renderer's, on the best device.
+    ("light", &["opencl", "scene", "Device"]),
     ("scene", &["image"]),
     ("particle", &["scene"]),
     ("reference", &["image", "scene", "volume"]),
@@ -80,6 +83,7 @@ const LAYERS: [(&str, &[&str]); 14] = [
             "opencl",
             "bloom",
             "glow",
+            "light",
             "mesh",
             "metaball",
             "particle",
@@ -107,6 +111,7 @@ const LAYERS: [(&str, &[&str]); 14] = [
             "opencl",
             "bloom",
             "glow",
+            "light",
             "mesh",
             "metaball",
             "scene",
@@ -227,6 +232,7 @@ fn every_file_of_cl_is_embedded_once() {
         "src/wave/kinds.rs",
         "src/bloom/sources.rs",
         "src/glow/sources.rs",
+        "src/light/sources.rs",
         "src/mesh/sources.rs",
         "src/metaball/sources.rs",
         "src/opencl/source.rs",

@@ -1,4 +1,5 @@
-// The kernels of meshes: one ray a pixel, then the finer rays of each pixel, then what light meshes throw back.
+// The kernels that find meshes: one ray a pixel, then the finer rays of each pixel. What light meshes throw back,
+// shade.cl finds.
 //
 // Where a pixel and its neighbours see one smooth surface, its finer lengths are those to the plane of its own
 // triangle: n.(o + z w) is the same for all of them, o being where a ray begins, w its way and n the plane's normal.
@@ -11,23 +12,6 @@
 #define FLAT 4e-5f
 #define LEAST_COSINE 0.99f
 #endif
-
-// A ray still sees what its length, as it was rounded, ends before by this share.
-#define ROUNDING 1e-6f
-
-// A single ray: where it begins, and its way by a depth of 1, world axes.
-typedef struct {
-    float3 origin, way;
-} EyeRay;
-
-INLINE EyeRay eye_ray(const MeshSight *const sight, const float column, const float row) {
-    const float x = fma(column, sight->step_x, sight->first_x), y = fma(row, sight->step_y, sight->first_y);
-    const float3 beside = x * sight->right.xyz + y * sight->down.xyz;
-    EyeRay ray;
-    ray.origin = sight->is_parallel ? sight->eye.xyz + beside : sight->eye.xyz;
-    ray.way = sight->is_parallel ? sight->forward.xyz : sight->forward.xyz + beside;
-    return ray;
-}
 
 // The plane of a triangle, as rays beside the one that meets it see it.
 typedef struct {
@@ -165,41 +149,4 @@ __kernel void trace_rays(TREE_PARAMETERS, const MeshSight sight, const uint firs
         lengths[y * sight.width + x] = is_seen ? own_length : given;
         triangles[y * sight.width + x] = is_seen ? triangle : NOTHING;
     }
-}
-
-// Returns the radiance of a triangle that a ray meets so far along it: ambient light, and by Lambert's law that of a
-// lamp, on the side that faces the eye.
-INLINE float3 radiance_of(const MeshLight *const light, __global const float4 *const albedos,
-                          __global const MeshTriangle *const triangle, const EyeRay *const ray) {
-    const float3 outside = normal_of(triangle->normal);
-    const float3 normal = dot(outside, ray->way) > 0.0f ? -outside : outside;
-    const float facing = fmax(dot(normal, light->lamp.xyz), 0.0f);
-    return albedos[triangle->mesh].xyz * (light->ambient.xyz + facing * light->sun.xyz);
-}
-
-// Adds up the light of the rays of each pixel that nothing hides, which ends their final lengths.
-__kernel void shade_meshes(const MeshSight sight, const MeshLight lit, const uint first_pixel, const uint end_pixel,
-                           __global const MeshTriangle *const restrict tree_triangles,
-                           __global const float4 *const restrict albedos, __global const float *const restrict lengths,
-                           __global const uint *const restrict triangles, const uint has_finals,
-                           __global const float *const restrict finals, __global float4 *const restrict light) {
-    const uint pixel = first_pixel + get_global_id(0);
-    if (pixel >= end_pixel)
-        return;
-    const uint width = sight.width / sight.across, column = pixel % width, row = pixel / width;
-    float3 sum = (float3)(0.0f), last = (float3)(0.0f);
-    uint shaded = NOTHING;
-    for (uint part = 0u; part < sight.across * sight.across; ++part) {
-        const uint x = column * sight.across + part % sight.across, y = row * sight.across + part / sight.across;
-        const uint place = y * sight.width + x, triangle = triangles[place];
-        if (triangle == NOTHING || (has_finals && lengths[place] > finals[place] * (1.0f + ROUNDING)))
-            continue;
-        if (triangle != shaded) {
-            const EyeRay ray = eye_ray(&sight, (float)x, (float)y);
-            last = radiance_of(&lit, albedos, tree_triangles + triangle, &ray);
-            shaded = triangle;
-        }
-        sum += last;
-    }
-    light[pixel] = (float4)(sum / (float)(sight.across * sight.across), 1.0f);
 }

@@ -148,3 +148,17 @@ CALL_IF_SCALAR Met meet_tree(TREE_PARAMETERS, const MeshSight *const sight, cons
         number = stack[--waiting];
     }
 }
+
+// A single ray: where it begins, and its way by a depth of 1, world axes.
+typedef struct {
+    float3 origin, way;
+} EyeRay;
+
+INLINE EyeRay eye_ray(const MeshSight *const sight, const float column, const float row) {
+    const float x = fma(column, sight->step_x, sight->first_x), y = fma(row, sight->step_y, sight->first_y);
+    const float3 beside = x * sight->right.xyz + y * sight->down.xyz;
+    EyeRay ray;
+    ray.origin = sight->is_parallel ? sight->eye.xyz + beside : sight->eye.xyz;
+    ray.way = sight->is_parallel ? sight->forward.xyz : sight->forward.xyz + beside;
+    return ray;
+}

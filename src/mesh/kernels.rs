@@ -5,6 +5,7 @@ use opencl3::event::Event;
 use super::pack;
 use super::sources::sources;
 use crate::error::Result;
+use crate::light;
 use crate::opencl::{Argument, Compute, DeviceForm, Handle, Kernel, Program, RendererOptions};
 
 /// Work-items in a group, which share nothing; of a CPU few enough that all cores are busy to the end.
@@ -19,7 +20,6 @@ const ITEMS: u32 = 1 << 17;
 pub(super) struct Kernels {
     pub trace_pixels: Kernel,
     pub trace_rays: Kernel,
-    pub shade_meshes: Kernel,
 }
 
 impl Kernels {
@@ -33,9 +33,32 @@ impl Kernels {
         let kernels = Self {
             trace_pixels: program.kernel("trace_pixels")?,
             trace_rays: program.kernel("trace_rays")?,
-            shade_meshes: program.kernel("shade_meshes")?,
         };
         Ok((kernels, program))
+    }
+}
+
+/// The kernels of the light on meshes, and on points that a host lists.
+#[derive(Debug)]
+pub(super) struct Shading {
+    pub shade_meshes: Kernel,
+    pub light_points: Kernel,
+}
+
+impl Shading {
+    /// Builds them.
+    ///
+    /// # Errors
+    /// As [`Program::build`].
+    pub(super) fn build(compute: &Compute, options: &RendererOptions) -> Result<(Self, Program)> {
+        let text = sources().resolve("mesh/shade.cl");
+        let definitions = pack::definitions() + &light::definitions();
+        let program = Program::build(compute, text, &definitions, options)?;
+        let shading = Self {
+            shade_meshes: program.kernel("shade_meshes")?,
+            light_points: program.kernel("light_points")?,
+        };
+        Ok((shading, program))
     }
 }
 
@@ -47,7 +70,8 @@ pub(crate) fn build_text(
     options: &RendererOptions,
 ) -> Result<Program> {
     let text = sources().resolve_text(name, text);
-    Program::build(compute, text, &pack::definitions(), options)
+    let definitions = pack::definitions() + &light::definitions();
+    Program::build(compute, text, &definitions, options)
 }
 
 /// Launches a kernel over so many work-items, which it counts from `first` to `end` by these names.

@@ -5,27 +5,26 @@
 mod kernels;
 pub mod pack;
 mod self_test;
+mod shade;
+mod shade_test;
 mod sight;
 mod sources;
 mod tree;
-
-use std::sync::Arc;
 
 use opencl3::event::Event;
 
 use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage, ImageSize};
+use crate::light::Lights;
 use crate::opencl::{
     Argument, Compute, DeviceBuffer, Handle, Pixel, RendererOptions, Uploaded, UploadedShared,
     run_time,
 };
 use crate::scene::{Camera, Mesh, Scene};
 pub(crate) use kernels::build_text;
-use kernels::{Kernels, launch};
-use pack::{MeshSight, vector};
-#[allow(unused_imports, reason = "for engines that look into a tree")]
-pub(crate) use sources::TREE_FILES;
+use kernels::{Kernels, Shading, launch};
+use pack::MeshSight;
 pub use tree::{Tree, UploadedTree};
 
 /// The kernels, the tree and the buffers of a device, which are kept from frame to frame.
@@ -33,6 +32,7 @@ pub use tree::{Tree, UploadedTree};
 pub(crate) struct Meshes {
     options: RendererOptions,
     kernels: Option<Kernels>,
+    shading: Option<Shading>,
     /// Of which meshes the tree is, and how often one was built.
     known: Vec<Mesh>,
     built: u32,
@@ -41,6 +41,7 @@ pub(crate) struct Meshes {
     depths: UploadedShared<f32>,
     finals: UploadedShared<f32>,
     albedos: Uploaded<[f32; 4]>,
+    lights: Lights,
     pixel_depths: Option<DeviceBuffer<f32>>,
     pixel_triangles: Option<DeviceBuffer<u32>>,
     lengths: Option<DeviceBuffer<f32>>,
@@ -75,6 +76,7 @@ impl Meshes {
         Self {
             options: options.clone(),
             kernels: None,
+            shading: None,
             known: Vec::new(),
             built: 0,
             tree: Tree::default(),
@@ -82,6 +84,7 @@ impl Meshes {
             depths: UploadedShared::new("the depth image"),
             finals: UploadedShared::new("the lengths of rays"),
             albedos: Uploaded::new("the colours of meshes"),
+            lights: Lights::new(),
             pixel_depths: None,
             pixel_triangles: None,
             lengths: None,
@@ -213,53 +216,6 @@ impl Meshes {
         launch(compute, &kernels.trace_rays, &arguments, items, under_way)
     }
 
-    /// Returns the mean radiance of what each pixel's rays met of meshes in the last [`Meshes::trace`], RGBA by rows,
-    /// where `ends`, the final lengths of the same rays, do not hide it.
-    ///
-    /// # Errors
-    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Device`](crate::Error::Device).
-    pub(crate) fn shade(
-        &mut self,
-        compute: &Compute,
-        scene: &Scene,
-        ends: &DepthImage,
-    ) -> Result<Arc<Vec<f32>>> {
-        self.cost = FrameCost::default();
-        let pixels = scene.image.pixels();
-        let mut light = vec![0.0; 4 * pixels];
-        let (Some(kernels), Some(pass)) = (&self.kernels, &self.pass) else {
-            return Ok(light.into());
-        };
-        let has_finals = !Arc::ptr_eq(ends.shared_values(), pass.depth.shared_values());
-        let finals = has_finals.then(|| ends.shared_values());
-        self.finals.upload(compute, finals)?;
-        let albedos: Vec<[f32; 4]> = scene.meshes.iter().map(|it| vector(it.albedo)).collect();
-        self.albedos.upload(compute, &albedos)?;
-        let lit = sight::light(scene);
-        let has_finals = u32::from(has_finals);
-        let [_, triangles_of_tree, ..] = self.uploaded.arguments();
-        let arguments: [(&str, &dyn Argument); 9] = [
-            triangles_of_tree,
-            ("sight", &pass.sight),
-            ("lit", &lit),
-            ("albedos", &self.albedos),
-            ("lengths", &self.lengths),
-            ("triangles", &self.triangles),
-            ("has_finals", &has_finals),
-            ("finals", self.finals.argument()),
-            ("light", &self.light),
-        ];
-        let items = ("first_pixel", "end_pixel", pixels as u32);
-        let under_way = &mut self.under_way;
-        let drawn = launch(compute, &kernels.shade_meshes, &arguments, items, under_way);
-        let settled = self.settle(compute);
-        drawn.and(settled)?;
-        if let Some(from) = &self.light {
-            from.read(compute, bytemuck::cast_slice_mut(&mut light))?;
-        }
-        Ok(light.into())
-    }
-
     /// Waits for what is under way, and adds up what it cost.
     fn settle(&mut self, compute: &Compute) -> Result<()> {
         let mut outcome = Ok(());
@@ -277,7 +233,8 @@ impl Meshes {
         self.uploaded.settle(compute)?;
         self.depths.settle(compute)?;
         self.finals.settle(compute)?;
-        self.albedos.settle(compute)
+        self.albedos.settle(compute)?;
+        self.lights.settle(compute)
     }
 }
 

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use super::pack::{MeshLight, MeshSight, vector};
 use super::tree::Tree;
 use crate::image::DepthAlong;
-use crate::scene::{AMBIENT, LAMP, Scene, ViewPlane};
+use crate::scene::{AMBIENT, LAMP, Scene, Sun, ViewPlane};
 
 /// Boxes are so much wider, of the distance of what is farthest from the eye: rounding a place and turning it to the
 /// axes of the picture moves it by less.
@@ -62,8 +62,19 @@ fn axes(plane: &ViewPlane) -> DMat3 {
     )
 }
 
-/// Returns the light on meshes: that on metaballs.
+/// Returns the light on meshes, but for what waves cast: the scene's, else that on metaballs.
 pub(super) fn light(scene: &Scene) -> MeshLight {
+    if let Some(lighting) = &scene.lighting {
+        let sun = lighting.sun.unwrap_or(Sun {
+            direction: DVec3::Z,
+            color: DVec3::ZERO,
+        });
+        return MeshLight {
+            lamp: vector(sun.direction.normalize()),
+            ambient: vector(lighting.ambient),
+            sun: vector(sun.color),
+        };
+    }
     let lamp = axes(&scene.view_plane()) * LAMP;
     MeshLight {
         lamp: vector(lamp.normalize()),

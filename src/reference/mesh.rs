@@ -1,7 +1,11 @@
 //! Meshes in float64, by another method than the kernels': triangles halved along the longest axis of the box around
 //! them, and each that a ray may meet solved for its three unknowns (Moeller, Trumbore 1997).
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
+
+use super::irradiance::Caster;
 
 use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage};
@@ -17,7 +21,11 @@ const EDGE: f64 = 1e-12;
 /// A ray still sees what its length, in float32, ends before by this share.
 const ROUNDING: f64 = 1e-6;
 
+/// How near to an end of a way nothing hides it, as a share of the size of all meshes.
+const MARGIN: f64 = 1e-7;
+
 /// Triangles in halves of halves.
+#[derive(Debug)]
 struct Halves {
     triangles: Vec<Triangle>,
     nodes: Vec<Node>,
@@ -27,6 +35,37 @@ struct Halves {
 struct Triangle {
     corners: [DVec3; 3],
     mesh: usize,
+}
+
+/// What hides light from surfaces: the triangles of all meshes.
+#[derive(Debug)]
+pub(super) struct Hiding {
+    halves: Halves,
+    /// What is nearer to an end of a way hides nothing of it, world units.
+    pub margin: f64,
+    /// Farther than any two places of the meshes are apart.
+    pub beyond: f64,
+}
+
+impl Hiding {
+    /// Makes that of meshes; `None` of none.
+    pub(super) fn new(meshes: &[Mesh]) -> Option<Self> {
+        let halves = (!meshes.is_empty()).then(|| Halves::new(meshes))?;
+        let size = halves.nodes[0].low.distance(halves.nodes[0].high);
+        Some(Self {
+            halves,
+            margin: MARGIN * size,
+            beyond: 2.0 * size,
+        })
+    }
+
+    /// Returns whether something is between two places.
+    pub(super) fn hides(&self, from: DVec3, to: DVec3) -> bool {
+        let length = from.distance(to);
+        let direction = (to - from) / length;
+        let met = self.halves.nearest(from, direction, &mut Vec::new());
+        met.length > self.margin && met.length < length - self.margin
+    }
 }
 
 /// A box around triangles, or around two boxes.
@@ -247,7 +286,10 @@ impl TracedMeshes {
     /// that of the lamp that lights metaballs.
     pub(crate) fn light(&self, scene: &Scene, ends: &DepthImage) -> Vec<f32> {
         let across = (ends.size().width / scene.image.width) as usize;
-        let plane = scene.view_plane();
+        let (_, plane) = scene.ray_grid(across as u32);
+        let caster = scene
+            .lighting
+            .map(|lighting| (lighting, Caster::new(scene, lighting)));
         let lamp = LAMP.x * plane.column_step.normalize()
             + LAMP.y * plane.row_step.normalize()
             + LAMP.z * plane.forward;
@@ -260,8 +302,23 @@ impl TracedMeshes {
             if !ray.length.is_finite() || ray.length > end * (1.0 + ROUNDING) {
                 return DVec3::ZERO;
             }
-            let facing = ray.normal.dot(lamp).max(0.0);
-            scene.meshes[ray.mesh].albedo * (AMBIENT + (1.0 - AMBIENT) * facing)
+            let albedo = scene.meshes[ray.mesh].albedo;
+            let Some((lighting, caster)) = &caster else {
+                let facing = ray.normal.dot(lamp).max(0.0);
+                return albedo * (AMBIENT + (1.0 - AMBIENT) * facing);
+            };
+            let (from, direction, _) =
+                line(&plane, index % (width * across), index / (width * across));
+            let place = from + ray.length * direction;
+            let mut light = lighting.ambient + caster.irradiance(place, ray.normal) / PI;
+            if let Some(sun) = &lighting.sun {
+                let to_sun = sun.direction.normalize();
+                let facing = ray.normal.dot(to_sun).max(0.0);
+                if facing > 0.0 && caster.sees(place, ray.normal, to_sun) {
+                    light += facing * sun.color;
+                }
+            }
+            albedo * light
         };
         let mut light = vec![0.0_f32; 4 * scene.image.pixels()];
         for (index, pixel) in light.as_chunks_mut::<4>().0.iter_mut().enumerate() {

@@ -6,6 +6,7 @@
 mod emission;
 mod field;
 mod footprint;
+mod irradiance;
 mod mesh;
 mod particles;
 mod quadrature;
@@ -19,6 +20,7 @@ use glam::DVec3;
 pub(crate) use emission::Emitter;
 #[doc(hidden)]
 pub use field::{CurveField, Field, Sample, Source, b_spline, sources};
+pub use irradiance::irradiance;
 pub(crate) use mesh::see_meshes;
 #[doc(hidden)]
 pub use mesh::{MeshRay, mesh_rays};

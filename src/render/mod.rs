@@ -6,6 +6,7 @@ mod device;
 mod engines;
 mod host;
 mod host_depth;
+mod irradiance;
 mod joined;
 mod layers;
 mod moments;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::kinds::for_each_kind;
 use super::source::HasLight;
 use super::values::{Checked, Fault};
-use super::{List, Scene};
+use super::{Lighting, List, Scene};
 use crate::shown::shown;
 
 /// A longer name, with that of a channel, is more than some programs read.
@@ -43,11 +43,17 @@ macro_rules! define_light_groups {
                 (scene.image, scene.decay, scene.absorption) = (self.image, self.decay, self.absorption);
                 (scene.integration, scene.display) = (self.integration, self.display.clone());
                 scene.depth = self.depth.clone();
+                scene.lighting = self.lighting.map(|lighting| match group {
+                    Some(_) => Lighting { ambient: DVec3::ZERO, sun: None, ..lighting },
+                    None => lighting,
+                });
                 scene.meshes = self.meshes.clone();
                 scene.metaballs = self.metaballs.clone();
                 if group.is_some() {
                     scene.metaballs.iter_mut().for_each(|surface| surface.color = DVec3::ZERO);
-                    scene.meshes.iter_mut().for_each(|mesh| mesh.albedo = DVec3::ZERO);
+                    if self.lighting.is_none() {
+                        scene.meshes.iter_mut().for_each(|mesh| mesh.albedo = DVec3::ZERO);
+                    }
                 }
                 scene.colliders = self.colliders.clone();
                 match group {

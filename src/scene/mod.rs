@@ -22,6 +22,7 @@ mod colors;
 mod depth_layers;
 #[cfg(feature = "files")]
 mod depth_report;
+mod emitter;
 mod exposure;
 mod extent;
 #[cfg(feature = "files")]
@@ -34,6 +35,7 @@ pub mod keys;
 pub(crate) mod kinds;
 mod light_element;
 mod light_group;
+mod lighting;
 mod list;
 mod mesh;
 mod metaballs;
@@ -56,10 +58,12 @@ mod warnings;
 use glam::DVec3;
 
 pub use camera::{Camera, CameraMatrices, ClipY};
+pub(crate) use chain::Piece;
 pub use chain::{Dashes, ElectricArc};
 pub(crate) use depth_layers::DepthLayers;
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;
+pub(crate) use emitter::{Emitter, EmitterCore};
 #[cfg(feature = "files")]
 pub use file::{AnimatedScene, MethodKeys, SceneSpan};
 pub use group::{Group, Repeat, Rotation};
@@ -67,6 +71,7 @@ pub use integration::{
     Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
 };
 pub use light_element::LightElement;
+pub use lighting::{Lighting, Sun};
 pub use list::List;
 pub use mesh::{Mesh, TriangleList};
 pub(crate) use metaballs::{AMBIENT, LAMP};
@@ -112,6 +117,8 @@ macro_rules! define_scene {
             /// times as many depths across and down: pixels at the edges of things are then the mean of the light
             /// before each surface.
             pub depth: Option<DepthImage>,
+            /// How surfaces are lit; `None`: meshes by a lamp beside the eye, the waves cast no light.
+            pub lighting: Option<Lighting>,
             /// How waves of particles are simulated; `None`: by the defaults.
             pub simulation: Option<SimulationSettings>,
             /// Waves of particles, which [`crate::particle::Simulation`] moves; their light is drawn.
@@ -141,6 +148,7 @@ macro_rules! define_scene {
                     integration: Integration::default(),
                     display: Display::default(),
                     depth: None,
+                    lighting: None,
                     simulation: None,
                     waves: List::new(),
                     colliders: List::new(),

@@ -53,6 +53,9 @@ impl Scene {
         if let Some(absorption) = &self.absorption {
             absorption.check().map_err(of("absorption"))?;
         }
+        if let Some(lighting) = &self.lighting {
+            lighting.check().map_err(of("lighting"))?;
+        }
         let integration = &self.integration;
         integration.method.check().map_err(of("integration"))?;
         check_softening(integration.softening).map_err(of("integration"))?;

@@ -88,6 +88,7 @@ impl Scene {
             .chain(self.byte_colors())
             .chain(dark)
             .chain(self.no_particles())
+            .chain(self.nothing_to_light())
             .collect()
     }
 
@@ -143,6 +144,15 @@ impl Scene {
             .position(|metaballs| metaballs.points.is_empty())?;
         let message = "it has no particle, so there is no surface: `points`, `file` or `lattice` says where they are";
         Some(SceneError::value(format!("metaballs[{index}]"), message))
+    }
+
+    /// Says that light is to be cast, and on nothing.
+    fn nothing_to_light(&self) -> Option<SceneError> {
+        let is_idle = self.lighting.is_some() && self.meshes.is_empty();
+        is_idle.then(|| {
+            let message = "lights meshes, and there is no [[mesh]]: add one, or leave it out";
+            SceneError::value("lighting", message)
+        })
     }
 
     /// Says that nothing glows.

@@ -4,7 +4,7 @@
 use crate::common;
 use energywave::internals::pack::layout::STRUCTS;
 use energywave::internals::{
-    self, BloomStep, DeviceBuffer, DeviceStruct, GLOW_STRUCTS, KINDS, MESH_STRUCTS,
+    self, BloomStep, DeviceBuffer, DeviceStruct, GLOW_STRUCTS, KINDS, LIGHT_STRUCTS, MESH_STRUCTS,
     METABALL_STRUCTS, StoredDepths, StructLayout, host_depth_definitions,
 };
 
@@ -41,6 +41,10 @@ fn is_of_glow(layout: &StructLayout) -> bool {
     GLOW_STRUCTS.iter().any(|it| it.name == layout.name)
 }
 
+fn is_of_light(layout: &StructLayout) -> bool {
+    LIGHT_STRUCTS.iter().any(|it| it.name == layout.name)
+}
+
 fn is_of_meshes(layout: &StructLayout) -> bool {
     MESH_STRUCTS.iter().any(|it| it.name == layout.name)
 }
@@ -50,6 +54,7 @@ fn words_by_name(layout: &StructLayout) -> Vec<u32> {
         () if layout.name == BLOOM_STEP.name => "#include \"film.h\"\n#include \"bloom/step.h\"\n",
         () if is_of_metaballs(layout) => "#include \"metaball/types.h\"\n",
         () if is_of_glow(layout) => "#include \"glow/types.h\"\n",
+        () if is_of_light(layout) => "#include \"light/types.h\"\n",
         () if is_of_meshes(layout) => "#include \"mesh/types.h\"\n",
         () => FILES,
     };
@@ -77,7 +82,9 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
             internals::build_metaball_text(&compute, name, &text, &options)
         }
         () if is_of_glow(layout) => internals::build_glow_text(&compute, name, &text, &options),
-        () if is_of_meshes(layout) => internals::build_mesh_text(&compute, name, &text, &options),
+        () if is_of_meshes(layout) || is_of_light(layout) => {
+            internals::build_mesh_text(&compute, name, &text, &options)
+        }
         () => internals::build_text(&compute, name, &text, &KINDS, &options),
     }
     .unwrap();
@@ -106,6 +113,7 @@ fn the_device_finds_every_field_where_the_host_put_it() {
         .chain(METABALL_STRUCTS)
         .chain(GLOW_STRUCTS)
         .chain(MESH_STRUCTS)
+        .chain(LIGHT_STRUCTS)
     {
         let expected: Vec<u32> = (1..=layout.size as u32 / 4).collect();
         assert_eq!(words_by_name(layout), expected, "{}", layout.name);

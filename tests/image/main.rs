@@ -10,6 +10,10 @@ mod arcs; // draws displaced cores as the reference does
 mod beams;
 mod built; // compares beams with the lines and points that they are made of
 mod cameras; // holds matrices of engines to where they project points
+mod cast_cases; // sources that cast light, by definition
+mod cast_laws; // what that obeys: no jumps, sums of parts, capsules from afar
+mod cast_light; // holds the light that waves cast on surfaces to sums of random places
+mod cast_shadows; // holds what meshes leave of it to the reference
 mod clip_depths; // holds depths of clip space to the surfaces that a rasteriser met
 mod convolution;
 mod convolved_paths; // holds light that adds up over a core to its definition

@@ -36,6 +36,7 @@ mod groups; // has groups placed as the sources that they stand for
 #[cfg(unix)] // as cli
 mod help;
 mod light_groups; // reads what the program says of itself, and types its examples
+mod lighting; // reads how meshes are lit, and has every fault named with its place
 mod meshes; // reads meshes from files, and has every fault named with its place
 mod messages; // is told what to write instead, and nothing raw or long
 #[cfg(unix)] // as cli

@@ -104,7 +104,7 @@ impl Piece {
     }
 
     /// Returns its part between two values of t.
-    pub(super) fn part(&self, from: f64, to: f64) -> Self {
+    pub(crate) fn part(&self, from: f64, to: f64) -> Self {
         let [_, _, c2, c3] = self.0;
         let width = to - from;
         Self([
@@ -116,7 +116,7 @@ impl Piece {
     }
 
     /// Returns its part between two lengths; its own is `whole`.
-    pub(super) fn between(&self, whole: f64, from: f64, to: f64) -> Self {
+    pub(in crate::scene) fn between(&self, whole: f64, from: f64, to: f64) -> Self {
         let t = |length: f64| match length {
             length if length <= 0.0 => 0.0,
             length if length >= whole => 1.0,

@@ -142,3 +142,13 @@ impl Motion<'_> {
         fault
     }
 }
+
+fn name_file(error: Error, path: &Path) -> Error {
+    match error {
+        Error::Scene(mut fault) => {
+            fault.path = Some(PathBuf::from(path));
+            Error::Scene(fault)
+        }
+        other => other,
+    }
+}

@@ -27,11 +27,12 @@ mod tree;
 mod words;
 mod write;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::kinds::for_each_kind;
+use super::lighting::read_lighting;
 use super::*;
 use crate::error::{Error, Result, SceneError};
 use crate::memory;
@@ -85,6 +86,8 @@ macro_rules! define_scene_file {
             display: DisplayTable,
             #[serde(default, skip_serializing_if = "Option::is_none")]
             depth: Option<DepthTable>,
+            #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "read_lighting")]
+            lighting: Option<Lighting>,
             #[serde(default, skip_serializing)]
             time: TimeTable,
             #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -124,6 +127,7 @@ macro_rules! define_scene_file {
                     integration: self.integration.integration(),
                     display: self.display.display(),
                     depth: None,
+                    lighting: self.lighting,
                     simulation: self.simulation,
                     waves: std::mem::take(&mut self.wave),
                     colliders: self.colliders(),
@@ -192,6 +196,7 @@ macro_rules! define_scene_file {
                     integration: IntegrationTable::of(&scene.integration),
                     display,
                     depth,
+                    lighting: scene.lighting,
                     time: TimeTable::default(),
                     simulation: scene.simulation,
                     wave: scene.waves.clone(),
@@ -241,6 +246,7 @@ impl SceneFile {
         self.integration = other.integration;
         self.display = other.display;
         self.depth = other.depth;
+        self.lighting = other.lighting;
         self.time = other.time;
         self.simulation = other.simulation;
         self.wave = other.wave;
@@ -404,15 +410,5 @@ fn empty_file() -> SceneError {
             "camera",
             "the file is empty; a scene needs at least [camera] with eye and target",
         )
-    }
-}
-
-fn name_file(error: Error, path: &Path) -> Error {
-    match error {
-        Error::Scene(mut fault) => {
-            fault.path = Some(PathBuf::from(path));
-            Error::Scene(fault)
-        }
-        other => other,
     }
 }

@@ -52,7 +52,9 @@ impl AnimatedScene {
         let named = images.chain(surfaces).chain(lights);
         let named = named.map(|file| motion.folder.join(file));
         let meshes = file.mesh.iter();
-        named.chain(meshes.flat_map(|mesh| mesh.files(&motion.folder))).collect()
+        named
+            .chain(meshes.flat_map(|mesh| mesh.files(&motion.folder)))
+            .collect()
     }
 }
 

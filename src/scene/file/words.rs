@@ -16,7 +16,7 @@ pub(super) enum Language {
 }
 
 /// Tables of which a scene has one.
-const SINGLE: [&str; 9] = [
+const SINGLE: [&str; 10] = [
     "camera",
     "image",
     "decay",
@@ -26,6 +26,7 @@ const SINGLE: [&str; 9] = [
     "depth",
     "time",
     "simulation",
+    "lighting",
 ];
 
 /// Tables of which a scene has some, besides sources and groups, and lists within tables.

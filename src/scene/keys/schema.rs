@@ -19,6 +19,10 @@ pub fn json_schema() -> String {
             schema
         };
         let schema = match table.count {
+            Count::Once if table.name == "lighting" => {
+                let short = json!({ "type": "boolean" });
+                described(json!({ "anyOf": [reference(table.name), short] }))
+            }
             Count::Required | Count::Once => described(reference(table.name)),
             Count::Many => described(list_of(reference(table.name), 0, None)),
             Count::Inside | Count::ListInside => continue,

@@ -11,6 +11,7 @@ use crate::scene::file::{
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
 use crate::scene::kinds::for_each_kind;
+use crate::scene::lighting::{LIGHTING_KEYS, SUN_KEYS};
 use crate::scene::simulation::{
     ACCELERATION_KEYS, CONTROL_KEYS, MIXTURE_KEYS, SIMULATION_KEYS, WAVE_KEYS,
 };
@@ -188,6 +189,12 @@ pub fn tables() -> Vec<Table> {
             DEPTH_KEYS,
         ),
         Table::new(
+            "lighting",
+            Once,
+            "How meshes are lit, also by the waves; `lighting = true` stands for an empty one",
+            LIGHTING_KEYS,
+        ),
+        Table::new(
             "time",
             Once,
             "When the scene begins again, and how motion is blurred, if anything moves",
@@ -251,6 +258,7 @@ pub fn tables() -> Vec<Table> {
             ARC_KEYS,
         ),
         Table::new("dashes", Inside, "Gaps that part a core", DASHES_KEYS),
+        Table::new("sun", Inside, "A light from one direction", SUN_KEYS),
         Table::new(
             "rotate",
             Inside,

@@ -4,9 +4,11 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Brightness, Core, HasLight, Light, Placement, Profile, Shared, SourceKind, emissions_along, source, source_struct,
+    Brightness, Core, Falloff, HasLight, Light, Placement, Profile, Shared, SourceKind, emissions_along, source,
+    source_struct,
 };
 use crate::scene::chain::{LitChain, Piece, Run};
+use crate::scene::emitter::{AddEmitter, EmitterCore, add_even, emission};
 use crate::scene::values::{Fault, Checked, direction, finite, named, positive, read_vector, vector};
 
 source_struct! {
@@ -188,6 +190,28 @@ impl SourceKind for Beam {
             fade: [1.0, 1.0],
         });
         Some(arms)
+    }
+
+    /// The cap is how the end of the line glows, and emits nothing of its own.
+    fn for_each_emitter(&self, add: AddEmitter<'_>) {
+        if self.as_chains().is_some() {
+            return add_even(self, add);
+        }
+        let line = |range| EmitterCore::Line {
+            point: self.tip,
+            direction: self.direction.normalize(),
+            range,
+        };
+        let light = emission(self.lights(), Falloff::cast_by_line);
+        add(line([0.0, f64::INFINITY]), [light; 3]);
+        if let BeamEnd::Taper(length) = self.end {
+            add(line([-length, 0.0]), [DVec3::ZERO, 0.5 * light, light]);
+        }
+        let spheres = self.lights().map(|light| Light {
+            coefficient: self.sphere_coefficient,
+            ..light
+        });
+        add(EmitterCore::Point(self.tip), [emission(spheres, Falloff::cast_by_point); 3]);
     }
 
     fn evened(self) -> Self {

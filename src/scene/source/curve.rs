@@ -3,9 +3,12 @@
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, emissions_along, item, source, source_struct};
+use super::{
+    Brightness, Core, Falloff, HasLight, Placement, Profile, SourceKind, emissions_along, item, source, source_struct,
+};
 use crate::scene::Dashes;
 use crate::scene::chain::{Along, LitChain, Piece, Run};
+use crate::scene::emitter::{AddEmitter, EmitterCore, add_even, emission};
 use crate::scene::values::{Checked, Fault, finite, read_vectors, vector};
 
 source_struct! {
@@ -112,6 +115,34 @@ impl SourceKind for Curve {
         let along = self.along_keys();
         let whole = || Run::whole(vec![Piece::quadratic(self.control_points)]);
         (!along.is_even()).then(|| along.lit(whole(), None, &self.shared()))
+    }
+
+    fn for_each_emitter(&self, add: AddEmitter<'_>) {
+        let Some(series) = &self.intensity else {
+            return add_even(self, add);
+        };
+        let [a, b, c] = self.control_points;
+        if a == b && b == c {
+            let light = series[0] * emission(self.lights(), Falloff::cast_by_point);
+            return add(EmitterCore::Point(a), [light; 3]);
+        }
+        // Of a spline, between two knots: the means of two weights, or an end weight, with the weight between (2015,
+        // eq. 14 to 16).
+        let whole = Piece::quadratic(self.control_points);
+        let light = emission(self.lights(), Falloff::cast_by_line);
+        let spans = series.len() - 2;
+        let joint = |k: usize| match k {
+            0 => series[0],
+            k if k == spans => series[k + 1],
+            k => 0.5 * (series[k] + series[k + 1]),
+        };
+        for k in 0..spans {
+            let [from, to] = [k, k + 1].map(|knot| knot as f64 / spans as f64);
+            let (begin, end) = (joint(k), joint(k + 1));
+            let middle = 0.25 * (begin + end) + 0.5 * series[k + 1];
+            let part = EmitterCore::Curve(whole.part(from, to));
+            add(part, [begin, middle, end].map(|weight| weight * light));
+        }
     }
 
     fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {

@@ -103,6 +103,33 @@ impl Falloff {
         self.sum_across(reach, |field| field)
     }
 
+    /// Returns the intensity of a point of coefficient 1 that casts light, before the gain: `r0^2` times its field at
+    /// r0. For powers of the distance r0 is 1, whatever the thickness and the reach, also for `smeared`, which is `1/d`
+    /// from afar; for `gaussian`, and for `inverse-cube` with a radius, r0 is the radius.
+    pub(crate) fn cast_by_point(&self) -> f64 {
+        let radius = self.radius;
+        match self.profile {
+            Profile::Inverse | Profile::InverseSquare | Profile::Smeared | Profile::Convolution => {
+                1.0
+            }
+            Profile::InverseCube if radius == 0.0 => 1.0,
+            Profile::InverseCube => 0.5_f64.powf(1.5) / radius,
+            Profile::Gaussian => (-0.5_f64).exp() * radius * radius,
+        }
+    }
+
+    /// Returns the same per length of a line: `r0 / pi` times its field at r0; of light that adds up over the core, of
+    /// each of its points.
+    pub(crate) fn cast_by_line(&self) -> f64 {
+        let per_length = self.cast_by_point() / PI;
+        match self.profile {
+            Profile::Convolution => 1.0,
+            Profile::Gaussian => per_length / self.radius,
+            Profile::InverseCube if self.radius > 0.0 => per_length / self.radius,
+            _ => per_length,
+        }
+    }
+
     /// Integrates what is summed of the field of coefficient 1 straight across a core with a radius, on both sides as
     /// far as `end`, by length: Simpson's rule over u, d = radius sinh u, as what is steep at the core is even in u.
     pub(crate) fn sum_across(&self, end: f64, summand: impl Fn(f64) -> f64) -> f64 {

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use glam::DVec3;
 
 use super::chain::{LightAlong, LitChain};
+use super::emitter::{AddEmitter, add_even};
 use super::group::Placement;
 use super::kinds::for_each_kind;
 use super::values::{Checked, Fault, finite, vector};
@@ -83,6 +84,14 @@ pub(crate) trait SourceKind: HasLight {
 
     /// Returns where its core is, of a source whose values are right.
     fn core(&self) -> Core;
+
+    /// Calls `add` with the parts of its core that cast light on surfaces, and what they emit.
+    fn for_each_emitter(&self, add: AddEmitter<'_>)
+    where
+        Self: Sized,
+    {
+        add_even(self, add);
+    }
 
     /// Returns the chains that it is drawn as where light changes along its core, whose lights add; `None`: it is drawn
     /// as it is.
@@ -217,6 +226,6 @@ fn one() -> f64 {
     1.0
 }
 
-fn white() -> DVec3 {
+pub(super) fn white() -> DVec3 {
     DVec3::ONE
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Brightness, Core, HasLight, Placement, Profile, SourceKind, emissions_along, plus_z, source, source_struct};
 use crate::scene::chain::{LitChain, Piece, Run};
+use crate::scene::emitter::{AddEmitter, EmitterCore, add_even};
 use crate::scene::values::{
     Checked, Fault, direction, finite, positive, read_some_pair, read_some_vector, read_vector, vector,
 };
@@ -66,8 +67,12 @@ impl Torus {
     fn whole(&self) -> Run {
         let x = self.major_radius * self.start();
         let y = self.axis.normalize().cross(x);
-        let angles = self.sweep.unwrap_or([0.0, 360.0]).map(f64::to_radians);
-        Run::whole(Piece::circle(self.center, x, y, angles))
+        Run::whole(Piece::circle(self.center, x, y, self.angles()))
+    }
+
+    /// Returns from where to where it goes, radians.
+    fn angles(&self) -> [f64; 2] {
+        self.sweep.unwrap_or([0.0, 360.0]).map(f64::to_radians)
     }
 
     fn is_even(&self) -> bool {
@@ -158,6 +163,33 @@ impl SourceKind for Torus {
     fn as_chains(&self) -> Option<Vec<LitChain>> {
         let is_ring = self.is_even() && !self.shared().adds_any_up();
         (!is_ring).then(|| self.along_keys().lit(self.whole(), None, &self.shared()))
+    }
+
+    fn for_each_emitter(&self, add: AddEmitter<'_>) {
+        let chains = match self.arc {
+            None => self.as_chains(),
+            Some(_) => None, // displaced cores are no parts of circles
+        };
+        let Some(chains) = chains else {
+            return add_even(self, add);
+        };
+        let x = self.major_radius * self.start();
+        let y = self.axis.normalize().cross(x);
+        let [begin, end] = self.angles();
+        for lit in chains {
+            for run in &lit.chain.runs {
+                for pair in lit.knots(run, &[]).windows(2) {
+                    let [from, to] = [pair[0], pair[1]];
+                    let arc = EmitterCore::Arc {
+                        center: self.center,
+                        x,
+                        y,
+                        angles: [from, to].map(|own| begin + (end - begin) * run.share(own)),
+                    };
+                    add(arc, lit.light_over(run, [from, 0.5 * (from + to), to]));
+                }
+            }
+        }
     }
 
     fn specimen(place: DVec3, profile: Profile) -> Self {
