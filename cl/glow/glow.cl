@@ -31,9 +31,8 @@ bool may_be_near(const GlowView *const view, const Block *const block, __global 
 }
 
 // Returns the light of a tile's elements along the rays of a block.
-INLINE float3v block_light(const GlowView *const view, const Block *const block,
-                           __global const Element *const elements, __global const uint *const numbers, const uint begin,
-                           const uint end, float3v light) {
+INLINE float3v block_light(const GlowView *const view, const Block *const block, __global const Element *const elements,
+                           __global const uint *const numbers, const uint begin, const uint end, float3v light) {
     for (uint place = begin; place < end; ++place) {
         __global const Element *const element = elements + numbers[place];
         if (!may_be_near(view, block, element))

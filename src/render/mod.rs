@@ -14,6 +14,7 @@ mod one;
 mod over;
 mod rays;
 mod referenced;
+mod seen;
 mod several;
 mod shares;
 mod shutter;

@@ -1,22 +1,19 @@
 //! Renders scenes on one OpenCL device: plans a frame, draws it in bands that fit into the film, and reads them back.
 
 use std::ops::{ControlFlow, Range};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::engines::{Engines, FramePlan};
 use crate::bloom::Spreader;
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};
-use crate::image::{Bloom, DepthImage, ImageSize};
+use crate::image::{Bloom, ImageSize};
 use crate::mesh::Meshes;
-#[cfg(feature = "papers")]
-use crate::metaball::SurfaceCounts;
 use crate::metaball::Surfaces;
 use crate::opencl::{
     Adder, Compute, Film, HostDepths, HostLink, MappedFilm, OpenClDevice, Pixel, RendererOptions,
 };
-use crate::scene::{Ray, Scene, SeenSurfaces};
+use crate::scene::{Ray, Scene};
 use crate::volume::{CellValue, Grid, Volume};
 use crate::wave::Wave;
 
@@ -40,7 +37,7 @@ pub(crate) struct DeviceRenderer {
     /// Whether the device itself writes the caller's memory where it can; else what it wrote is copied there.
     pub(crate) writes_in_place: bool,
     /// Another queue, for what is not to wait for a host.
-    beside: Option<Compute>,
+    pub(super) beside: Option<Compute>,
     pub(super) compute: Compute,
 }
 
@@ -108,53 +105,6 @@ impl DeviceRenderer {
     /// Returns what the last frame cost.
     pub(crate) fn cost(&self) -> FrameCost {
         self.engines.cost().then(self.bloom_cost)
-    }
-
-    /// Returns what [`Surfaces::sorting`] says.
-    #[cfg(feature = "papers")]
-    pub(crate) fn surface_sorting(&self) -> Duration {
-        self.surfaces.sorting()
-    }
-
-    /// Returns what [`Surfaces::counted`] says.
-    #[cfg(feature = "papers")]
-    pub(crate) fn surface_counts(&self) -> SurfaceCounts {
-        self.surfaces.counted()
-    }
-
-    /// Opens the queue on which surfaces are found where the renderer's own may wait for a host.
-    fn open_beside(&mut self) -> Result<()> {
-        if self.host.is_some() && self.beside.is_none() {
-            self.beside = Some(self.compute.sibling()?);
-        }
-        Ok(())
-    }
-
-    /// Finds the surfaces of a valid scene, and returns what that cost, too.
-    pub(crate) fn see_surfaces(&mut self, scene: &Scene) -> Result<(SeenSurfaces, FrameCost)> {
-        self.open_beside()?;
-        let compute = self.beside.as_ref().unwrap_or(&self.compute);
-        let seen = self.surfaces.draw(compute, scene, scene.rays_across())?;
-        Ok((seen, self.surfaces.cost()))
-    }
-
-    /// Finds the meshes of a valid scene along its rays, and returns what that cost, too.
-    pub(crate) fn trace_meshes(&mut self, scene: &Scene) -> Result<(DepthImage, FrameCost)> {
-        self.open_beside()?;
-        let compute = self.beside.as_ref().unwrap_or(&self.compute);
-        let depth = self.meshes.trace(compute, scene, scene.rays_across())?;
-        Ok((depth, self.meshes.cost()))
-    }
-
-    /// Returns the light of the meshes that were traced last, up to final lengths, and what that cost.
-    pub(crate) fn shade_meshes(
-        &mut self,
-        scene: &Scene,
-        ends: &DepthImage,
-    ) -> Result<(Arc<Vec<f32>>, FrameCost)> {
-        let compute = self.beside.as_ref().unwrap_or(&self.compute);
-        let light = self.meshes.shade(compute, scene, ends)?;
-        Ok((light, self.meshes.cost()))
     }
 
     /// Returns what [`Wave::grain_rows`] says.
