@@ -141,12 +141,40 @@ float3v cross3(const float3v a, const float3v b) {
     return r;
 }
 
+// Loads and stores LANES values that lie side by side, in whatever memory.
+#if LANES == 1
+#define LOAD_LANES(from) (*(from))
+#define STORE_LANES(value, to) (*(to) = (value))
+#else
+#define LOAD_LANES(from) JOIN(vload, LANES)(0, from)
+#define STORE_LANES(value, to) JOIN(vstore, LANES)(value, 0, to)
+#endif
+
 // Writes the lanes one by one into LANES values.
 void scatter(const floatv value, float *const lanes) {
+    STORE_LANES(value, lanes);
+}
+
+// Returns the sum of all lanes.
+float sum_lanes(const floatv value) {
 #if LANES == 1
-    lanes[0] = value;
+    return value;
+#elif defined(NO_SHUFFLES)
+    float lanes[LANES], sum = 0.0f;
+    scatter(value, lanes);
+    for (uint lane = 0; lane < LANES; ++lane)
+        sum += lanes[lane];
+    return sum;
 #else
-    JOIN(vstore, LANES)(value, 0, lanes);
+#if LANES == 16
+    const float8 eight = value.lo + value.hi;
+    const float4 four = eight.lo + eight.hi;
+#elif LANES == 8
+    const float4 four = value.lo + value.hi;
+#else
+    const float4 four = value;
+#endif
+    return (four.x + four.y) + (four.z + four.w);
 #endif
 }
 

@@ -73,13 +73,14 @@ Stretches curve_above(__global const CastLight *const curve, const float3 y, con
     return above;
 }
 
-// Returns the light times (n.y) |c'| / |y|^3.
-float3 curve_integrand(__global const CastLight *const curve, const float3 y, const float3 normal, const float t) {
-    const float3 place = curve_place(curve, y, t);
-    const float3 velocity = curve_velocity(curve, t);
-    const float inverse = rsqrt(dot(place, place) + curve->place.w);
-    const float weight = FACING(normal, place) * length(velocity) * inverse * inverse * inverse;
-    return weight * light_at(curve, t);
+// Returns (n.y) |c'| / |y|^3.
+floatv curve_integrand(__global const CastLight *const curve, const float3 y, const float3 normal, const floatv t) {
+    const float3v along = uniform3(curve->along), across = uniform3(curve->across), last = uniform3(curve->last);
+    const float3v bent = fma3(last, t, across);
+    const float3v place = fma3(fma3(bent, t, along), t, uniform3((float4)(y, 0.0f)));
+    const float3v velocity = fma3(add3(scale3(bent, splat(2.0f)), scale3(last, t)), t, along);
+    const floatv distance2 = dot3(place, place) + curve->place.w;
+    return FACING3(normal, place) * sqrt(dot3(velocity, velocity)) / (distance2 * sqrt(distance2));
 }
 
 // Finds where a curve that has its vertex at an end is nearest, also before it begins or behind its end; gives the w of
@@ -112,15 +113,12 @@ float3 part_of_curve(__global const CastLight *const curve, const float3 y, cons
                      const float begin, const float end) {
     const float middle = 0.5f * (begin + end), half_width = 0.5f * (end - begin);
     float3 sum = (float3)(0.0f);
-    const float grown_middle = exp(middle);
-    for (int k = 0; k < GAUSS_HALF; ++k) {
-        const float grown = exp(half_width * GAUSS_NODES[k]);
-        const float before = grown_middle / grown, behind = grown_middle * grown;
-        const float2 at = (float2)(before, behind), inverse = 1.0f / at;
-        const float2 t = nearest.x + 0.5f * nearest.y * (at - inverse);
-        const float2 per_v = 0.5f * nearest.y * (at + inverse);
-        sum += GAUSS_WEIGHTS[k] *
-               (per_v.x * curve_integrand(curve, y, normal, t.x) + per_v.y * curve_integrand(curve, y, normal, t.y));
+    for (uint first = 0; first < GAUSS_COUNT; first += LANES) {
+        const floatv grown = exp(fma(splat(half_width), LOAD_LANES(GAUSS_NODES + first), splat(middle)));
+        const floatv shrunk = 1.0f / grown;
+        const floatv t = nearest.x + 0.5f * nearest.y * (grown - shrunk);
+        const floatv per_v = 0.5f * nearest.y * (grown + shrunk);
+        sum += lit_sum(curve, LOAD_LANES(GAUSS_WEIGHTS + first) * per_v * curve_integrand(curve, y, normal, t), t);
     }
     return half_width * sum;
 }
@@ -132,9 +130,9 @@ float3 curve_irradiance(__global const CastLight *const curve, const float3 y, c
     if (dot(center, center) > 4.0f * size * size) {
         const float middle = 0.5f * (from + to), half_width = 0.5f * (to - from);
         float3 sum = (float3)(0.0f);
-        for (int k = 0; k < 4; ++k) {
-            const float node = (k & 1 ? 1.0f : -1.0f) * FAR_NODES[k >> 1];
-            sum += FAR_WEIGHTS[k >> 1] * curve_integrand(curve, y, normal, middle + half_width * node);
+        for (uint first = 0; first < FAR_COUNT; first += LANES) {
+            const floatv t = fma(splat(half_width), LOAD_LANES(FAR_NODES + first), splat(middle));
+            sum += lit_sum(curve, LOAD_LANES(FAR_WEIGHTS + first) * curve_integrand(curve, y, normal, t), t);
         }
         return half_width * sum;
     }

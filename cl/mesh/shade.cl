@@ -37,6 +37,16 @@ CALL float3 radiance_of(TREE_PARAMETERS, LIGHTS_PARAMETERS, const MeshLight *con
     return albedos[triangle->mesh].xyz * (light->ambient.xyz + facing * light->sun.xyz + (1.0f / PI_F) * cast_light);
 }
 
+// Two triangles whose normals' cosine is at least so much have one light in a pixel, where nothing casts shadows.
+#define ALIKE 0.9f
+
+// Returns whether two triangles of a pixel have one light.
+INLINE bool is_alike(__global const MeshTriangle *const one, __global const MeshTriangle *const other,
+                     const uint shadow_samples) {
+    return one == other || (!shadow_samples && one->mesh == other->mesh &&
+                            dot(normal_of(one->normal), normal_of(other->normal)) >= ALIKE);
+}
+
 // Adds up the light of the rays of each pixel that nothing hides, which ends their final lengths.
 __kernel void shade_meshes(TREE_PARAMETERS, LIGHTS_PARAMETERS, const MeshSight sight, const MeshLight lit,
                            const uint first_pixel, const uint end_pixel, __global const float4 *const restrict albedos,
@@ -57,8 +67,10 @@ __kernel void shade_meshes(TREE_PARAMETERS, LIGHTS_PARAMETERS, const MeshSight s
         const bool is_seen = part < count && triangles[place] != NOTHING &&
                              !(has_finals && lengths[place] > finals[place] * (1.0f + ROUNDING));
         const uint triangle = is_seen ? triangles[place] : NOTHING;
-        if (triangle != last && last != NOTHING) {
-            // Rays that meet one triangle, one after another, have the light of their middle.
+        const bool is_same =
+            last != NOTHING && is_seen && is_alike(tree_triangles + triangle, tree_triangles + last, shadow_samples);
+        if (!is_same && last != NOTHING) {
+            // Rays that meet one triangle, or alike ones, one after another, have the light of their middle.
             const float3 middle = rays / met;
             const EyeRay ray = eye_ray(&sight, middle.x, middle.y);
             sum += met *
@@ -66,7 +78,7 @@ __kernel void shade_meshes(TREE_PARAMETERS, LIGHTS_PARAMETERS, const MeshSight s
             rays = (float3)(0.0f);
             met = 0.0f;
         }
-        last = triangle;
+        last = is_same ? last : triangle;
         if (!is_seen)
             continue;
         const EyeRay ray = eye_ray(&sight, (float)x, (float)y);

@@ -3,14 +3,6 @@
 #include "../view.h"
 #include "radiance.h"
 
-#if LANES == 1
-#define LOAD_LANES(from) (*(from))
-#define STORE_LANES(value, to) (*(to) = (value))
-#else
-#define LOAD_LANES(from) JOIN(vload, LANES)(0, from)
-#define STORE_LANES(value, to) JOIN(vstore, LANES)(value, 0, to)
-#endif
-
 void add_lanes(__global float *const restrict to, const floatv value) {
     STORE_LANES(LOAD_LANES(to) + value, to);
 }
