@@ -183,9 +183,10 @@ fn equal_devices_draw_particles_and_surfaces_as_one_does() {
                 for frame in 0..4 {
                     let found = draw(&mut renderer, &scene, frame);
                     assert!(found == expected, "{antialias:?}, {count} devices: {frame}");
+                    // Later shares follow the time that each took.
+                    let rows = renderer.shares().iter().filter(|rows| !rows.is_empty());
+                    assert!(frame > 0 || rows.count() > 1, "{:?}", renderer.shares());
                 }
-                let rows = renderer.shares().iter().filter(|rows| !rows.is_empty());
-                assert!(rows.count() > 1, "{:?}", renderer.shares());
                 for remove in [
                     |scene: &mut Scene| scene.metaballs.clear(),
                     |scene: &mut Scene| scene.particles.clear(),

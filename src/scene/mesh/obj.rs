@@ -13,12 +13,12 @@ pub(super) fn read(bytes: &[u8]) -> Read {
     let mut lines = bytes.split(|byte| *byte == b'\n').enumerate();
     while let Some((number, line)) = lines.next() {
         // Names and remarks may be in any encoding.
-        let mut line = String::from_utf8_lossy(line);
-        while let Some(begun) = line.trim_end().strip_suffix('\\') {
-            let more = lines
-                .next()
-                .map_or("".into(), |(_, it)| String::from_utf8_lossy(it));
-            line = format!("{begun} {more}").into();
+        let mut line = String::from_utf8_lossy(line).into_owned();
+        while let Some(begun) = line.trim_end().strip_suffix('\\').map(str::len) {
+            line.truncate(begun);
+            line.push(' ');
+            let more = lines.next().map_or(&[][..], |(_, it)| it);
+            line.push_str(&String::from_utf8_lossy(more));
         }
         let mut words = line.split_whitespace();
         let added = match words.next() {
