@@ -110,6 +110,7 @@ impl Renderer {
         wait_list: &[cl_event],
     ) -> Result<Event> {
         self.check(scene)?;
+        self.host_renderer()?;
         let simulated = self.simulated(scene)?;
         let scene = simulated.as_ref().unwrap_or(scene);
         if self.is_joined(scene)? {
@@ -117,13 +118,9 @@ impl Renderer {
             return unsafe { self.enqueue_joined(scene, (target, depth), wait_list) };
         }
         let bloom = self.bloom_of(scene);
-        match &mut self.backend {
-            // SAFETY: the caller's promise.
-            RendererBackend::OpenCl(renderer) => unsafe {
-                renderer.enqueue(scene, bloom, (target, depth), wait_list)
-            },
-            RendererBackend::Several(_) | RendererBackend::Reference { .. } => Err(no_host()),
-        }
+        let renderer = self.host_renderer()?;
+        // SAFETY: the caller's promise.
+        unsafe { renderer.enqueue(scene, bloom, (target, depth), wait_list) }
     }
 
     /// Enqueues a frame that is put together of parts; only depths that a host has on the device are waited for.

@@ -191,7 +191,7 @@ fn other_programs_read_every_file_and_find_the_same_cells() {
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     println!("{said}{}", String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success());
-    let is_required = std::env::var_os("ENERGYWAVE_REQUIRES_READERS").is_some();
+    let is_required = std::env::var_os("REQUIRE_VOLUME_READERS").is_some();
     assert!(
         !(is_required && said.contains("skipped: ring.vdb")),
         "OpenVDB is not there"
