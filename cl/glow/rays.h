@@ -1,24 +1,10 @@
 // A block of rays side by side, and how light fades along them.
 #pragma once
+#include "../block.h"
 #include "../elementary.h"
 #include "../lanes.h"
 #include "../roots.h"
 #include "types.h"
-
-// Columns and rows of a block.
-#if LANES == 16
-#define BLOCK_COLUMNS 4u
-#define BLOCK_ROWS 4u
-#elif LANES == 8
-#define BLOCK_COLUMNS 4u
-#define BLOCK_ROWS 2u
-#elif LANES == 4
-#define BLOCK_COLUMNS 2u
-#define BLOCK_ROWS 2u
-#else
-#define BLOCK_COLUMNS 1u
-#define BLOCK_ROWS 1u
-#endif
 
 #define TINY 1e-30f
 

@@ -4,24 +4,10 @@
 // functions of Woop, Benthin, Wald 2013 tell what it meets, as cl/mesh/trace.h says. The depth z is the corners', in
 // the shares of the triangle that the edges span.
 #pragma once
+#include "../block.h"
 #include "trace.h"
 
 #pragma OPENCL FP_CONTRACT OFF
-
-// Columns and rows of a block of rays.
-#if LANES == 16
-#define BLOCK_COLUMNS 4u
-#define BLOCK_ROWS 4u
-#elif LANES == 8
-#define BLOCK_COLUMNS 4u
-#define BLOCK_ROWS 2u
-#elif LANES == 4
-#define BLOCK_COLUMNS 2u
-#define BLOCK_ROWS 2u
-#else
-#define BLOCK_COLUMNS 1u
-#define BLOCK_ROWS 1u
-#endif
 
 typedef struct {
     floatv offset_x, offset_y, slope_x, slope_y;

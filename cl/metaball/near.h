@@ -2,6 +2,7 @@
 // them. Where there are more than can be kept, a window is walked in parts, anew for each pass over it; none is
 // dropped.
 #pragma once
+#include "../block.h"
 #include "../lanes.h"
 #include "../roots.h"
 #include "cells.h"
@@ -20,21 +21,6 @@
 #define ROOM 16u
 #else
 #define ROOM 128u
-#endif
-
-// Columns and rows of a block of rays that are carried side by side.
-#if LANES == 16
-#define BLOCK_COLUMNS 4u
-#define BLOCK_ROWS 4u
-#elif LANES == 8
-#define BLOCK_COLUMNS 4u
-#define BLOCK_ROWS 2u
-#elif LANES == 4
-#define BLOCK_COLUMNS 2u
-#define BLOCK_ROWS 2u
-#else
-#define BLOCK_COLUMNS 1u
-#define BLOCK_ROWS 1u
 #endif
 
 // Rays that leave the eye, or its plane: x = offset + slope z.

@@ -234,7 +234,7 @@ impl Glow {
     }
 }
 
-/// Returns the columns and rows of a block of rays, as `cl/glow/rays.h` has them.
+/// Returns the columns and rows of a block of rays, as `cl/block.h` has them.
 fn block(lanes: u32) -> (u32, u32) {
     match lanes {
         16 => (4, 4),

@@ -16,6 +16,7 @@ pub(crate) use embed;
 pub const SHARED: &[SourceFile<'static>] = embed!(
     "check_size.h",
     "lanes.h",
+    "block.h",
     "fine.h",
     "roots.h",
     "elementary.h",
