@@ -161,11 +161,15 @@ fn hint(error: &Error) -> &'static str {
 }
 
 /// Chooses the devices of `--device`, else of `ENERGYWAVE_DEVICE`, else the best, and says on standard error which they
-/// are.
+/// are. No driver is loaded where the built-in reference is asked for.
 fn choose_devices(flag: Option<&str>) -> Result<Vec<Device>, Error> {
-    let devices = Devices::discover();
     let variable = std::env::var("ENERGYWAVE_DEVICE").unwrap_or_default();
     let choice = flag.or(Some(variable.as_str()).filter(|word| !word.is_empty()));
+    if choice.is_some_and(|word| word.trim().eq_ignore_ascii_case("reference")) {
+        note("device: reference (built in, float64)");
+        return Ok(vec![Device::reference()]);
+    }
+    let devices = Devices::discover();
     let chosen = match choice {
         Some(word) => devices.select_all(word)?,
         None => vec![devices.best_or_reference()],
