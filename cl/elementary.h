@@ -43,3 +43,18 @@ floatv arctangent_ratio(const floatv x2) {
     r = fma(r, x2, splat(-3.333303671e-1f));
     return fma(r, x2, splat(9.999999818e-1f));
 }
+
+// Returns the angle of a place (x, y), from -pi to pi; within 3e-7. Of (0, 0) it is 0.
+floatv angle_of(const floatv y, const floatv x) {
+    const floatv across = fabs(x), up = fabs(y);
+    const floatv ratio = fmin(across, up) / fmax(fmax(across, up), splat(1e-30f));
+    const floatv low = ratio * arctangent_ratio(ratio * ratio);
+    const floatv quarter = select(low, 1.57079633f - low, up > across);
+    return copysign(select(quarter, 3.14159265f - quarter, x < 0.0f), y);
+}
+
+// Returns asinh(x) for |x| below 1e18, within 3e-7 of max(1, |asinh x|).
+floatv inverse_hyperbolic_sine(const floatv x) {
+    const floatv size = fabs(x);
+    return copysign(LN_2 * binary_logarithm(size + sqrt(fma(size, size, splat(1.0f)))), x);
+}

@@ -4,141 +4,175 @@
 #pragma once
 #include "stretch.h"
 
-float3 curve_place(__global const CastLight *const curve, const float3 y, const float t) {
-    return y + t * (curve->along.xyz + t * (curve->across.xyz + t * curve->last.xyz));
+float3v curve_place(__global const CastLight *const curve, const float3v y, const floatv t) {
+    const float3v bent = fma3(uniform3(curve->last), t, uniform3(curve->across));
+    return fma3(fma3(bent, t, uniform3(curve->along)), t, y);
 }
 
-float3 curve_velocity(__global const CastLight *const curve, const float t) {
-    return curve->along.xyz + t * (2.0f * curve->across.xyz + 3.0f * t * curve->last.xyz);
+float3v curve_velocity(__global const CastLight *const curve, const floatv t) {
+    const float3v bent = fma3(uniform3(3.0f * curve->last), t, uniform3(2.0f * curve->across));
+    return fma3(bent, t, uniform3(curve->along));
 }
 
-// Returns the real roots of a t^2 + b t + c in their order, within [0,1]; 0 where there are none.
-float2 roots_within(const float a, const float b, const float c) {
-    const float discriminant = b * b - 4.0f * a * c;
-    if (!(discriminant > 0.0f))
-        return (float2)(0.0f);
-    const float q = -0.5f * (b + copysign(sqrt(discriminant), b));
-    const float one = q / a, other = c / q;
-    return clamp((float2)(fmin(one, other), fmax(one, other)), 0.0f, 1.0f);
+// The powers of t in n.y(t).
+typedef struct {
+    floatv of_0, of_1, of_2, of_3;
+} CurveHeights;
+
+floatv height_of_curve(const CurveHeights *const heights, const floatv t) {
+    return fma(fma(fma(heights->of_3, t, heights->of_2), t, heights->of_1), t, heights->of_0);
 }
 
-float height_of_curve(const float4 heights, const float t) {
-    return heights.x + t * (heights.y + t * (heights.z + t * heights.w));
+// Gives the two places within [0,1] at which n.y(t) turns, in their order; 0 where there are none.
+void turns_of_curve(const CurveHeights *const heights, floatv *const first, floatv *const second) {
+    const floatv a = 3.0f * heights->of_3, b = 2.0f * heights->of_2, c = heights->of_1;
+    const floatv discriminant = fma(b, b, -4.0f * a * c);
+    const floatv q = -0.5f * (b + copysign(sqrt(fmax(discriminant, 0.0f)), b));
+    const floatv one = q / a, other = c / q, zero = splat(0.0f);
+    const intv are_there = discriminant > 0.0f;
+    *first = select(zero, clamp(fmin(one, other), zero, splat(1.0f)), are_there);
+    *second = select(zero, clamp(fmax(one, other), zero, splat(1.0f)), are_there);
 }
 
 // Returns where n.y(t) is 0 between two places at which it has different signs: Newton's steps, halvings where they
 // leave the bracket.
-float horizon_of_curve(const float4 heights, float from, float to) {
-    const int rises = height_of_curve(heights, to) > 0.0f;
-    float t = 0.5f * (from + to);
+floatv horizon_of_curve(const CurveHeights *const heights, floatv from, floatv to) {
+    const intv rises = height_of_curve(heights, to) > 0.0f;
+    floatv t = 0.5f * (from + to);
     for (int step = 0; step < 8; ++step) {
-        const float height = height_of_curve(heights, t);
-        if ((height > 0.0f) == rises)
-            to = t;
-        else
-            from = t;
-        const float rise = heights.y + t * (2.0f * heights.z + 3.0f * t * heights.w);
-        const float next = t - height / rise;
-        t = next >= from && next <= to ? next : 0.5f * (from + to);
+        const floatv height = height_of_curve(heights, t);
+        const intv is_behind = (height > 0.0f) == rises;
+        to = select(to, t, is_behind);
+        from = select(t, from, is_behind);
+        const floatv rise = fma(fma(3.0f * heights->of_3, t, 2.0f * heights->of_2), t, heights->of_1);
+        const floatv next = t - height / rise;
+        t = select(0.5f * (from + to), next, (next >= from) & (next <= to));
     }
     return t;
 }
 
 // Returns what is above the horizon.
-Stretches curve_above(__global const CastLight *const curve, const float3 y, const float3 normal) {
-    Stretches above = {{0.0f, 0.0f}, {0.0f, 0.0f}, 0};
+Stretches curve_above(__global const CastLight *const curve, const float3v y, const float3v normal) {
+    Stretches above = no_stretch();
 #ifdef WITHOUT_HORIZON
-    add_stretch(&above, 0.0f, 1.0f);
+    add_stretch(&above, splat(0.0f), splat(1.0f));
 #else
-    const float4 heights = (float4)(FACING(normal, y), FACING(normal, curve->along.xyz),
-                                    FACING(normal, curve->across.xyz), FACING(normal, curve->last.xyz));
-    // Between its extremes it rises or falls.
-    const float2 extremes = roots_within(3.0f * heights.w, 2.0f * heights.z, heights.y);
-    const float ends[4] = {0.0f, extremes.x, extremes.y, 1.0f};
-    float begin = 0.0f;
-    int was_above = heights.x > 0.0f;
+    const CurveHeights heights = {FACING(normal, y), FACING(normal, uniform3(curve->along)),
+                                  FACING(normal, uniform3(curve->across)), FACING(normal, uniform3(curve->last))};
+    // Between its turns it rises or falls.
+    floatv ends[4];
+    ends[0] = splat(0.0f), ends[3] = splat(1.0f);
+    turns_of_curve(&heights, ends + 1, ends + 2);
+    floatv begin = splat(0.0f);
+    intv was_above = heights.of_0 > 0.0f;
     for (int k = 0; k < 3; ++k) {
-        const int is_above = height_of_curve(heights, ends[k + 1]) > 0.0f;
-        if (is_above == was_above)
+        const intv is_above = height_of_curve(&heights, ends[k + 1]) > 0.0f;
+        const intv crosses = is_above != was_above;
+        if (!any_lane(crosses))
             continue;
-        const float horizon = horizon_of_curve(heights, ends[k], ends[k + 1]);
-        if (was_above)
-            add_stretch(&above, begin, horizon);
-        begin = horizon;
+        const floatv horizon = horizon_of_curve(&heights, ends[k], ends[k + 1]);
+        add_stretch(&above, begin, select(begin, horizon, crosses & was_above));
+        begin = select(begin, horizon, crosses);
         was_above = is_above;
     }
-    if (was_above)
-        add_stretch(&above, begin, 1.0f);
+    add_stretch(&above, begin, select(begin, splat(1.0f), was_above));
 #endif
     return above;
 }
 
 // Returns (n.y) |c'| / |y|^3.
-floatv curve_integrand(__global const CastLight *const curve, const float3 y, const float3 normal, const floatv t) {
-    const float3v along = uniform3(curve->along), across = uniform3(curve->across), last = uniform3(curve->last);
-    const float3v bent = fma3(last, t, across);
-    const float3v place = fma3(fma3(bent, t, along), t, uniform3((float4)(y, 0.0f)));
-    const float3v velocity = fma3(add3(scale3(bent, splat(2.0f)), scale3(last, t)), t, along);
-    const floatv distance2 = dot3(place, place) + curve->place.w;
-    return FACING3(normal, place) * sqrt(dot3(velocity, velocity)) / (distance2 * sqrt(distance2));
+floatv curve_integrand(__global const CastLight *const curve, const float3v y, const float3v normal, const floatv t) {
+    const float3v place = curve_place(curve, y, t), velocity = curve_velocity(curve, t);
+    const floatv inverse = 0.5f * twice_inverse_sqrt(dot3(place, place) + curve->place.w);
+    const floatv speed = 0.5f * twice_sqrt(dot3(velocity, velocity));
+    return FACING(normal, place) * speed * (inverse * inverse * inverse);
 }
 
-// Finds where a curve that has its vertex at an end is nearest, also before it begins or behind its end; gives the w of
-// there, too.
-float2 nearest_of_curve(__global const CastLight *const curve, const float3 y) {
-    float least = INFINITY, t = 0.0f;
+void add_curve_node(LitSum *const sum, __global const CastLight *const curve, const float3v y, const float3v normal,
+                    const floatv t, const floatv weight) {
+    add_lit(sum, curve, weight * curve_integrand(curve, y, normal, t), t);
+}
+
+// Where a curve is nearest to a point, also before it begins or behind its end, and the w of there.
+typedef struct {
+    floatv t, w;
+} CurveNearest;
+
+// Finds it for a curve that has its vertex at an end.
+CurveNearest nearest_of_curve(__global const CastLight *const curve, const float3v y) {
+    const float3v across = uniform3(curve->across), last = uniform3(3.0f * curve->last);
+    floatv least = splat(INFINITY), t = splat(0.0f);
     for (int k = 0; k <= 4; ++k) {
-        const float3 place = curve_place(curve, y, 0.25f * k);
-        const float distance2 = dot(place, place);
-        t = distance2 < least ? 0.25f * k : t;
+        const floatv there = splat(0.25f * k);
+        const float3v place = curve_place(curve, y, there);
+        const floatv distance2 = dot3(place, place);
+        t = select(t, there, distance2 < least);
         least = fmin(least, distance2);
     }
-    float speed2 = 0.0f, curvature = 0.0f;
+    floatv speed2 = splat(0.0f), curvature = splat(0.0f);
     for (int k = 0; k < 4; ++k) {
-        const float3 place = curve_place(curve, y, t);
-        const float3 velocity = curve_velocity(curve, t);
+        const float3v place = curve_place(curve, y, t), velocity = curve_velocity(curve, t);
         // A half of each derivative of |y|^2; where the second is small, Newton's step goes too far.
-        speed2 = dot(velocity, velocity);
-        curvature = speed2 + 2.0f * dot(place, curve->across.xyz + 3.0f * t * curve->last.xyz);
-        const float slope = fmax(curvature, 0.25f * speed2);
-        t = clamp(t - dot(place, velocity) / slope, -1.0f, 2.0f);
+        speed2 = dot3(velocity, velocity);
+        curvature = fma(splat(2.0f), dot3(place, fma3(last, t, across)), speed2);
+        const floatv slope = fmax(curvature, 0.25f * speed2);
+        t = clamp(t - dot3(place, velocity) / slope, splat(-1.0f), splat(2.0f));
     }
-    const float3 place = curve_place(curve, y, t);
-    const float distance2 = dot(place, place) + curve->place.w;
-    return (float2)(t, sqrt(distance2 / fmax(curvature, 0.01f * speed2)));
+    const float3v place = curve_place(curve, y, t);
+    const floatv distance2 = dot3(place, place) + curve->place.w;
+    const CurveNearest nearest = {t, sqrt(distance2 / fmax(curvature, 0.01f * speed2))};
+    return nearest;
 }
 
-// Returns the integral from one v to another.
-float3 part_of_curve(__global const CastLight *const curve, const float3 y, const float3 normal, const float2 nearest,
-                     const float begin, const float end) {
-    const float middle = 0.5f * (begin + end), half_width = 0.5f * (end - begin);
-    float3 sum = (float3)(0.0f);
-    for (uint first = 0; first < GAUSS_COUNT; first += LANES) {
-        const floatv grown = exp(fma(splat(half_width), LOAD_LANES(GAUSS_NODES + first), splat(middle)));
-        const floatv shrunk = 1.0f / grown;
-        const floatv t = nearest.x + 0.5f * nearest.y * (grown - shrunk);
-        const floatv per_v = 0.5f * nearest.y * (grown + shrunk);
-        sum += lit_sum(curve, LOAD_LANES(GAUSS_WEIGHTS + first) * per_v * curve_integrand(curve, y, normal, t), t);
+// Adds the integral from one v to another, which is none where they are in no order.
+void add_part_of_curve(LitSum *const sum, __global const CastLight *const curve, const float3v y, const float3v normal,
+                       const CurveNearest *const nearest, const floatv begin, const floatv end) {
+    const floatv middle = 0.5f * (begin + end), half_width = fmax(0.5f * (end - begin), 0.0f);
+    if (!any_lane(half_width > 0.0f))
+        return;
+    // By how far the integrand's poles, about pi/2 beside the nearest place, are in widths.
+    const Rule rule = any_lane(half_width > 2.0f)    ? RULE_12
+                      : any_lane(half_width > 1.3f)  ? RULE_8
+                      : any_lane(half_width > 0.75f) ? RULE_6
+                                                     : RULE_4;
+    const floatv grown = power_of_two(LOG2_E * middle), shrunk = inverse(grown);
+    const floatv half_w = 0.5f * nearest->w;
+    for (uint node = rule.first; node < rule.end; ++node) {
+        const floatv more = power_of_two(LOG2_E * GAUSS_NODES[node] * half_width), less = inverse(more);
+        const floatv weight = GAUSS_WEIGHTS[node] * half_width * half_w;
+        floatv up = grown * more, down = shrunk * less;
+        add_curve_node(sum, curve, y, normal, fma(half_w, up - down, nearest->t), weight * (up + down));
+        up = grown * less, down = shrunk * more;
+        add_curve_node(sum, curve, y, normal, fma(half_w, up - down, nearest->t), weight * (up + down));
     }
-    return half_width * sum;
 }
 
-float3 curve_irradiance(__global const CastLight *const curve, const float3 y, const float3 normal, const float from,
-                        const float to) {
-    const float3 center = curve_place(curve, y, 0.5f);
+// Adds the integral over a part that is far away.
+void add_far_curve(LitSum *const sum, __global const CastLight *const curve, const float3v y, const float3v normal,
+                   const floatv from, const floatv to) {
+    const floatv middle = 0.5f * (from + to), half_width = 0.5f * (to - from);
+    for (uint node = RULE_4.first; node < RULE_4.end; ++node) {
+        const floatv off = GAUSS_NODES[node] * half_width, weight = GAUSS_WEIGHTS[node] * half_width;
+        add_curve_node(sum, curve, y, normal, middle - off, weight);
+        add_curve_node(sum, curve, y, normal, middle + off, weight);
+    }
+}
+
+float3v curve_irradiance(__global const CastLight *const curve, const float3v y, const float3v normal,
+                         const floatv from, const floatv to) {
+    const float3v center = curve_place(curve, y, splat(0.5f));
     const float size = length(curve->along.xyz) + 2.0f * length(curve->across.xyz) + 3.0f * length(curve->last.xyz);
-    if (dot(center, center) > 4.0f * size * size) {
-        const float middle = 0.5f * (from + to), half_width = 0.5f * (to - from);
-        float3 sum = (float3)(0.0f);
-        for (uint first = 0; first < FAR_COUNT; first += LANES) {
-            const floatv t = fma(splat(half_width), LOAD_LANES(FAR_NODES + first), splat(middle));
-            sum += lit_sum(curve, LOAD_LANES(FAR_WEIGHTS + first) * curve_integrand(curve, y, normal, t), t);
-        }
-        return half_width * sum;
+    const intv is_near = dot3(center, center) <= 4.0f * size * size;
+    LitSum sum = no_light();
+    if (any_lane(!is_near)) // the near part of what is far goes nowhere
+        add_far_curve(&sum, curve, y, normal, from, select(to, from, is_near));
+    if (any_lane(is_near)) {
+        const CurveNearest nearest = nearest_of_curve(curve, y);
+        const floatv begin = inverse_hyperbolic_sine((from - nearest.t) / nearest.w);
+        const floatv end = select(begin, inverse_hyperbolic_sine((to - nearest.t) / nearest.w), is_near);
+        const floatv middle = fmin(fmax(begin, 0.0f), end);
+        add_part_of_curve(&sum, curve, y, normal, &nearest, begin, middle);
+        add_part_of_curve(&sum, curve, y, normal, &nearest, middle, end);
     }
-    const float2 nearest = nearest_of_curve(curve, y);
-    const float begin = asinh((from - nearest.x) / nearest.y), end = asinh((to - nearest.x) / nearest.y);
-    if (begin >= 0.0f || end <= 0.0f)
-        return part_of_curve(curve, y, normal, nearest, begin, end);
-    return part_of_curve(curve, y, normal, nearest, begin, 0.0f) + part_of_curve(curve, y, normal, nearest, 0.0f, end);
+    return light_of(curve, sum);
 }

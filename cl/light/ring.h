@@ -10,84 +10,83 @@
 
 // How a ring is seen from a point.
 typedef struct {
-    float2 nearest;       // cosine and sine of the angle of the nearest point
-    float al, be;         // the squared distance is al - be cos(psi)
-    float near2, far2;    // D0^2, D1^2
-    float height;         // n.y of the nearest point
-    float across, beside; // n.y is height + across (cos(psi) - 1) + beside sin(psi)
+    floatv turn;           // the angle of the nearest point
+    floatv al, be;         // the squared distance is al - be cos(psi)
+    floatv near2, far2;    // D0^2, D1^2
+    floatv height;         // n.y of the nearest point
+    floatv across, beside; // n.y is height + across (cos(psi) - 1) + beside sin(psi)
 } SeenRing;
 
-SeenRing see_ring(__global const CastLight *const ring, const float3 y, const float3 normal) {
+SeenRing see_ring(__global const CastLight *const ring, const float3v y, const float3v normal) {
     const float radius = ring->along.w;
-    const float3 axis = cross(ring->along.xyz, ring->across.xyz);
-    const float3 from_center = -y - dot(-y, axis) * axis;
-    const float rho = length(from_center);
-    const float z = dot(y, axis);
-    const float3 out = rho > 1e-6f * radius ? from_center / rho : ring->along.xyz;
-    const float3 nearest = y + radius * out;
-    const float short2 = (radius - rho) * (radius - rho) + z * z + ring->place.w;
-    const SeenRing seen = {(float2)(dot(out, ring->along.xyz), dot(out, ring->across.xyz)),
-                           radius * radius + rho * rho + z * z + ring->place.w,
-                           2.0f * radius * rho,
-                           short2,
-                           short2 + 4.0f * radius * rho,
-                           FACING(normal, nearest),
-                           radius * FACING(normal, out),
-                           radius * FACING(normal, cross(axis, out))};
+    const float3v x_axis = uniform3(ring->along), y_axis = uniform3(ring->across);
+    const float3v axis = cross3(x_axis, y_axis);
+    const floatv z = dot3(y, axis);
+    const float3v from_center = subtract3(scale3(axis, z), y);
+    const floatv rho = sqrt(dot3(from_center, from_center));
+    const float3v out = select3(x_axis, scale3(from_center, 1.0f / rho), rho > 1e-6f * radius);
+    const floatv near2 = (radius - rho) * (radius - rho) + z * z + ring->place.w;
+    SeenRing seen;
+    seen.turn = angle_of(dot3(out, y_axis), dot3(out, x_axis));
+    seen.al = radius * radius + rho * rho + z * z + ring->place.w;
+    seen.be = 2.0f * radius * rho;
+    seen.near2 = near2;
+    seen.far2 = near2 + 4.0f * radius * rho;
+    seen.height = FACING(normal, fma3(out, splat(radius), y));
+    seen.across = radius * FACING(normal, out);
+    seen.beside = radius * FACING(normal, cross3(axis, out));
     return seen;
-}
-
-// Returns the angle of the nearest point.
-float turn_of(const SeenRing *const seen) {
-    return atan2(seen->nearest.y, seen->nearest.x);
 }
 
 // Returns what is above the horizon.
 Stretches ring_above(__global const CastLight *const ring, const SeenRing *const seen) {
-    Stretches above = {{0.0f, 0.0f}, {0.0f, 0.0f}, 0};
-    const float level = seen->height - seen->across;
-    const float swing = sqrt(seen->across * seen->across + seen->beside * seen->beside);
-#ifndef WITHOUT_HORIZON
-    if (level <= -swing)
+    Stretches above = no_stretch();
+    const floatv all_from = splat(ring->from), all_to = splat(ring->to);
+#ifdef WITHOUT_HORIZON
+    add_stretch(&above, all_from, all_to);
+#else
+    const floatv level = seen->height - seen->across;
+    const floatv swing = sqrt(seen->across * seen->across + seen->beside * seen->beside);
+    const intv is_cut = (level > -swing) & (level < swing);
+    add_stretch(&above, all_from, select(all_from, all_to, level >= swing));
+    if (!any_lane(is_cut))
         return above;
-    if (level < swing) {
-        const float top = turn_of(seen) + atan2(seen->beside, seen->across);
-        const float half_width = acos(-level / swing);
-        const float turns = floor((0.5f * (ring->from + ring->to) - top) / (2.0f * PI_F) + 0.5f);
-        for (int k = -1; k <= 1; ++k) {
-            const float middle = top + 2.0f * PI_F * (turns + k);
-            add_stretch(&above, fmax(ring->from, middle - half_width), fmin(ring->to, middle + half_width));
-        }
-        return above;
+    const floatv top = seen->turn + angle_of(seen->beside, seen->across);
+    const floatv half_width = angle_of(sqrt(fmax((swing - level) * (swing + level), 0.0f)), -level);
+    const floatv turns = floor((0.5f * (all_from + all_to) - top) / (2.0f * PI_F) + 0.5f);
+    for (int k = -1; k <= 1; ++k) {
+        const floatv middle = top + 2.0f * PI_F * (turns + k);
+        const floatv from = fmax(all_from, middle - half_width), to = fmin(all_to, middle + half_width);
+        add_stretch(&above, from, select(from, to, is_cut));
     }
 #endif
-    add_stretch(&above, ring->from, ring->to);
     return above;
 }
 
 // Returns the integral over all of it of (n.y) / |y|^3 over the angle: J3 and Jc by K and E of k'^2 = D0^2 / D1^2.
-float whole_ring(const SeenRing *const seen) {
-    const float far = sqrt(seen->far2);
-    float a = 1.0f, g = sqrt(seen->near2 / seen->far2);
-    float power = 0.5f, taken = 0.5f * (1.0f - g * g);
+floatv whole_ring(const SeenRing *const seen) {
+    const floatv far = sqrt(seen->far2);
+    floatv a = splat(1.0f), g = sqrt(seen->near2 / seen->far2);
+    floatv taken = 0.5f * (1.0f - g * g);
+    float power = 0.5f;
     for (int step = 0; step < 5; ++step) {
-        const float half_difference = 0.5f * (a - g);
-        const float mean = 0.5f * (a + g);
+        const floatv half_difference = 0.5f * (a - g);
+        const floatv mean = 0.5f * (a + g);
         g = sqrt(a * g);
         a = mean;
         power *= 2.0f;
         taken += power * half_difference * half_difference;
     }
-    const float k = 0.5f * PI_F / a;
-    const float e = k * (1.0f - taken);
-    const float j3 = 4.0f * e / (seen->near2 * far);
-    const float j1 = 4.0f * k / far;
-    const float b = seen->be / seen->al;
-    const float b2 = b * b;
+    const floatv k = 0.5f * PI_F / a;
+    const floatv e = k * (1.0f - taken);
+    const floatv j3 = 4.0f * e / (seen->near2 * far);
+    const floatv j1 = 4.0f * k / far;
+    const floatv b = seen->be / seen->al;
+    const floatv b2 = b * b;
     // From near the axis the closed form of Jc cancels, and a series serves.
-    const float series =
+    const floatv series =
         2.0f * PI_F * b * (0.75f + b2 * (0.8203125f + b2 * 0.845947266f)) / (seen->al * sqrt(seen->al));
-    const float jc = b < 0.1f ? series : (seen->al * j3 - j1) / seen->be;
+    const floatv jc = select((seen->al * j3 - j1) / seen->be, series, b < 0.1f);
     return (seen->height - seen->across) * j3 + seen->across * jc;
 }
 
@@ -104,55 +103,81 @@ floatv cosine_of(const floatv x, floatv *const sine) {
     return fma(c, x2, splat(1.0f));
 }
 
-// Returns the integral of light (n.y) / |y|^3 over angles psi that lie between two multiples of pi, angles of the ring
+// Returns v/2 of an angle psi from -pi to pi.
+floatv half_landen(const floatv psi, const floatv near, const floatv far) {
+    floatv sine;
+    const floatv cosine = cosine_of(0.5f * psi, &sine);
+    return angle_of(far * sine, fmax(near * cosine, 0.0f));
+}
+
+// A part of a ring: what is needed at a node.
+typedef struct {
+    floatv near, far, turns;
+} RingPart;
+
+void add_ring_node(LitSum *const sum, __global const CastLight *const ring, const SeenRing *const seen,
+                   const RingPart *const part, const floatv half_angle, const float weight) {
+    floatv sine;
+    const floatv cosine = cosine_of(half_angle, &sine);
+    const floatv c = part->far * cosine, s = part->near * sine;
+    const floatv q = c * c + s * s;
+    const floatv inverse_root = 0.5f * twice_inverse_sqrt(q);
+    const floatv turned = 2.0f * s * (seen->beside * c - seen->across * s);
+    // sqrt(q) (n.y).
+    const floatv value = weight * inverse_root * fma(q, seen->height, turned);
+    const floatv angle = is_even(ring) ? splat(0.0f) : 2.0f * angle_of(s, c) + part->turns;
+    add_lit(sum, ring, value, (angle - ring->from) * (1.0f / (ring->to - ring->from)));
+}
+
+// Adds the integral of light (n.y) / |y|^3 over angles psi that lie between two multiples of pi, angles of the ring
 // less `turns`.
-float3 part_of_ring(__global const CastLight *const ring, const SeenRing *const seen, const float from, const float to,
-                    const float turns) {
-    const float near = sqrt(seen->near2), far = sqrt(seen->far2);
-    // Halves of angles.
-    const float begin = atan2(far * sin(0.5f * from), near * cos(0.5f * from));
-    const float end = atan2(far * sin(0.5f * to), near * cos(0.5f * to));
-    const float middle = 0.5f * (begin + end), half_width = 0.5f * (end - begin);
-    const int is_same = is_even(ring);
-    float3 sum = (float3)(0.0f);
-    for (uint first = 0; first < GAUSS_COUNT; first += LANES) {
-        floatv sine;
-        const floatv cosine = cosine_of(fma(splat(half_width), LOAD_LANES(GAUSS_NODES + first), splat(middle)), &sine);
-        const floatv c = far * cosine, s = near * sine;
-        const floatv q = c * c + s * s;
-        const floatv height = seen->height + 2.0f * s / q * (seen->beside * c - seen->across * s);
-        const floatv weight = LOAD_LANES(GAUSS_WEIGHTS + first) * sqrt(q) * height;
-        if (is_same) {
-            sum += sum_lanes(weight) * ring->light.xyz;
-            continue;
-        }
-        const floatv angle = 2.0f * atan2(s, c) + turns;
-        sum += lit_sum(ring, weight, (angle - ring->from) * (1.0f / (ring->to - ring->from)));
+void add_part_of_ring(LitSum *const sum, __global const CastLight *const ring, const SeenRing *const seen,
+                      const floatv from, const floatv to, const floatv turns) {
+    const RingPart part = {sqrt(seen->near2), sqrt(seen->far2), turns};
+    const floatv begin = half_landen(from, part.near, part.far), end = half_landen(to, part.near, part.far);
+    const floatv middle = 0.5f * (begin + end), half_width = fmax(0.5f * (end - begin), 0.0f);
+    // The nearer, the closer the integrand's poles are.
+    const Rule rule = any_lane(part.near < 0.2f * part.far)   ? RULE_12
+                      : any_lane(part.near < 0.5f * part.far) ? RULE_8
+                                                              : RULE_6;
+    LitSum own = no_light();
+    for (uint node = rule.first; node < rule.end; ++node) {
+        const floatv off = half_width * GAUSS_NODES[node];
+        add_ring_node(&own, ring, seen, &part, middle - off, GAUSS_WEIGHTS[node]);
+        add_ring_node(&own, ring, seen, &part, middle + off, GAUSS_WEIGHTS[node]);
     }
-    return 2.0f * half_width / (seen->near2 * seen->far2) * sum;
+    const floatv scale = 2.0f * half_width / (seen->near2 * seen->far2);
+    sum->even = fma(scale, own.even, sum->even);
+    sum->slope = fma(scale, own.slope, sum->slope);
+    sum->bend = fma(scale, own.bend, sum->bend);
 }
 
-float3 ring_irradiance(__global const CastLight *const ring, const SeenRing *const seen, const float from,
-                       const float to) {
+float3v ring_irradiance(__global const CastLight *const ring, const SeenRing *const seen, const floatv from,
+                        const floatv to) {
     const float radius = ring->along.w;
-    if (to - from > 1.99999f * PI_F && is_even(ring))
-        return radius * whole_ring(seen) * ring->light.xyz;
-    float3 sum = (float3)(0.0f);
-    const float turn = turn_of(seen);
-    float begin = from - turn;
-    const float last = to - turn;
-    for (int k = 0; k < 4 && begin < last; ++k) {
+    const intv is_whole = to - from > (is_even(ring) ? 1.99999f * PI_F : INFINITY);
+    LitSum sum = no_light();
+    floatv begin = from - seen->turn;
+    // What is whole is no part.
+    const floatv last = select(to - seen->turn, begin, is_whole);
+    for (int k = 0; k < 4 && any_lane(begin < last); ++k) {
         // Up to the next multiple of pi.
-        const float half_turns = floor(begin / PI_F + 1e-6f) + 1.0f;
-        const float end = fmin(last, half_turns * PI_F);
-        const float turns = 2.0f * PI_F * floor(0.5f * half_turns);
-        sum +=
-            part_of_ring(ring, seen, clamp(begin - turns, -PI_F, PI_F), clamp(end - turns, -PI_F, PI_F), turns + turn);
-        begin = end;
+        const floatv half_turns = floor(begin / PI_F + 1e-6f) + 1.0f;
+        const floatv end = fmin(last, half_turns * PI_F);
+        const floatv turns = 2.0f * PI_F * floor(0.5f * half_turns);
+        const floatv low = splat(-PI_F), high = splat(PI_F);
+        add_part_of_ring(&sum, ring, seen, clamp(begin - turns, low, high), clamp(end - turns, low, high),
+                         turns + seen->turn);
+        begin = fmax(begin, end);
     }
-    return radius * sum;
+    const floatv whole = any_lane(is_whole) ? whole_ring(seen) : splat(0.0f);
+    sum.even = select(sum.even, whole, is_whole);
+    return scale3(light_of(ring, sum), splat(radius));
 }
 
-float3 ring_place(__global const CastLight *const ring, const float3 y, const float angle) {
-    return y + ring->along.w * (cos(angle) * ring->along.xyz + sin(angle) * ring->across.xyz);
+#ifdef IS_HIDDEN
+float3v ring_place(__global const CastLight *const ring, const float3v y, const float angle) {
+    const float radius = ring->along.w;
+    return fma3(uniform3(ring->across), radius * sin(angle), fma3(uniform3(ring->along), radius * cos(angle), y));
 }
+#endif

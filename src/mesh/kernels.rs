@@ -43,20 +43,32 @@ impl Kernels {
 pub(super) struct Shading {
     pub shade_meshes: Kernel,
     pub light_points: Kernel,
+    /// What a work-item carries side by side.
+    pub lanes: u32,
 }
 
 impl Shading {
-    /// Builds them.
+    /// Builds them, with what looks for shadows, one ray at a time, or without.
     ///
     /// # Errors
     /// As [`Program::build`].
-    pub(super) fn build(compute: &Compute, options: &RendererOptions) -> Result<(Self, Program)> {
+    pub(super) fn build(
+        compute: &Compute,
+        options: &RendererOptions,
+        has_shadows: bool,
+    ) -> Result<(Self, Program)> {
         let text = sources().resolve("mesh/shade.cl");
-        let definitions = pack::definitions() + &light::definitions();
-        let program = Program::build(compute, text, &definitions, options)?;
+        let mut definitions = pack::definitions() + &light::definitions();
+        let mut options = options.clone();
+        if has_shadows {
+            definitions += " -D SHADOWS";
+            options.lanes = Some(1);
+        }
+        let program = Program::build(compute, text, &definitions, &options)?;
         let shading = Self {
             shade_meshes: program.kernel("shade_meshes")?,
             light_points: program.kernel("light_points")?,
+            lanes: options.lanes.unwrap_or(compute.device().lanes),
         };
         Ok((shading, program))
     }

@@ -32,7 +32,8 @@ pub use tree::{Tree, UploadedTree};
 pub(crate) struct Meshes {
     options: RendererOptions,
     kernels: Option<Kernels>,
-    shading: Option<Shading>,
+    /// Without shadows, and with them.
+    shadings: [Option<Shading>; 2],
     /// Of which meshes the tree is, and how often one was built.
     known: Vec<Mesh>,
     built: u32,
@@ -76,7 +77,7 @@ impl Meshes {
         Self {
             options: options.clone(),
             kernels: None,
-            shading: None,
+            shadings: [None, None],
             known: Vec::new(),
             built: 0,
             tree: Tree::default(),
@@ -194,8 +195,7 @@ impl Meshes {
             return Ok(());
         };
         let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
-        let (columns, rows) = block(lanes);
-        let blocks = image.width.div_ceil(columns) * image.height.div_ceil(rows);
+        let blocks = blocks(image, lanes);
         let pixels = image.width * image.height;
         let met: [(&str, &dyn Argument); 3] = [
             ("sight", sight),
@@ -238,14 +238,15 @@ impl Meshes {
     }
 }
 
-/// Returns the columns and rows of a block of rays, as `cl/mesh/rays.h` has them.
-fn block(lanes: u32) -> (u32, u32) {
-    match lanes {
+/// Returns the number of blocks of so many rays that cover an image, each of the shape that `cl/block.h` has.
+fn blocks(image: ImageSize, lanes: u32) -> u32 {
+    let (columns, rows) = match lanes {
         16 => (4, 4),
         8 => (4, 2),
         4 => (2, 2),
         _ => (1, 1),
-    }
+    };
+    image.width.div_ceil(columns) * image.height.div_ceil(rows)
 }
 
 /// Makes sure that a buffer has room for so many elements.

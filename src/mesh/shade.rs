@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::kernels::{Shading, launch};
 use super::pack::vector;
 use super::shade_test::shade_test;
-use super::{Meshes, sight};
+use super::{Meshes, blocks, sight};
 use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::DepthImage;
@@ -18,11 +18,13 @@ use crate::scene::{Lighting, Scene};
 const POINTS: usize = 1 << 16;
 
 impl Meshes {
-    /// Makes sure that the kernels of light are there.
-    fn make_shading(&mut self, compute: &Compute) -> Result<()> {
-        if self.shading.is_none() {
-            let (shading, program) = Shading::build(compute, &self.options)?;
-            self.shading = Some(shade_test(compute, &self.options, (shading, &program))?);
+    /// Makes sure that the kernels of light are there, with shadows or without.
+    fn make_shading(&mut self, compute: &Compute, has_shadows: bool) -> Result<()> {
+        let shading = &mut self.shadings[usize::from(has_shadows)];
+        if shading.is_none() {
+            let (built, program) = Shading::build(compute, &self.options, has_shadows)?;
+            let built = (built, &program, has_shadows);
+            *shading = Some(shade_test(compute, &self.options, built)?);
         }
         Ok(())
     }
@@ -39,10 +41,12 @@ impl Meshes {
         ends: &DepthImage,
     ) -> Result<Arc<Vec<f32>>> {
         self.cost = FrameCost::default();
-        self.make_shading(compute)?;
+        let has_shadows = scene.lighting.is_some_and(|lighting| lighting.shadows);
+        self.make_shading(compute, has_shadows)?;
         let pixels = scene.image.pixels();
         let mut light = vec![0.0; 4 * pixels];
-        let (Some(shading), Some(pass)) = (&self.shading, &self.pass) else {
+        let shading = &self.shadings[usize::from(has_shadows)];
+        let (Some(shading), Some(pass)) = (shading, &self.pass) else {
             return Ok(light.into());
         };
         let has_finals = !Arc::ptr_eq(ends.shared_values(), pass.depth.shared_values());
@@ -66,7 +70,11 @@ impl Meshes {
         ];
         let tree = self.uploaded.arguments();
         let arguments = [&tree[..], &self.lights.arguments()[..], &own[..]].concat();
-        let items = ("first_pixel", "end_pixel", pixels as u32);
+        let items = (
+            "first_block",
+            "end_block",
+            blocks(scene.image, shading.lanes),
+        );
         let under_way = &mut self.under_way;
         let drawn = launch(compute, &shading.shade_meshes, &arguments, items, under_way);
         let settled = self.settle(compute);
@@ -90,16 +98,17 @@ impl Meshes {
         points: &[DVec3],
         normals: &[DVec3],
     ) -> Result<Vec<[f32; 3]>> {
-        self.make_shading(compute)?;
         let lighting = scene.lighting.unwrap_or_default();
         if lighting.shadows {
             self.plant(scene)?;
         }
+        let has_shadows = lighting.shadows && !self.tree.nodes.is_empty();
+        self.make_shading(compute, has_shadows)?;
         let mut irradiances = Vec::with_capacity(points.len());
         for (points, normals) in points.chunks(POINTS).zip(normals.chunks(POINTS)) {
             self.light_points(
                 compute,
-                (scene, lighting),
+                (scene, lighting, has_shadows),
                 points,
                 normals,
                 &mut irradiances,
@@ -111,19 +120,18 @@ impl Meshes {
     fn light_points(
         &mut self,
         compute: &Compute,
-        (scene, lighting): (&Scene, Lighting),
+        (scene, lighting, has_shadows): (&Scene, Lighting, bool),
         points: &[DVec3],
         normals: &[DVec3],
         irradiances: &mut Vec<[f32; 3]>,
     ) -> Result<()> {
-        let Some(shading) = &self.shading else {
+        let Some(shading) = &self.shadings[usize::from(has_shadows)] else {
             return Ok(());
         };
         // Where nothing hides them, from the middle of all points.
         let ends = || points.iter().copied();
         let (low, high) = (ends().reduce(DVec3::min), ends().reduce(DVec3::max));
         let middle = 0.5 * (low.unwrap_or_default() + high.unwrap_or_default());
-        let has_shadows = lighting.shadows && !self.tree.nodes.is_empty();
         let origin = if has_shadows {
             self.tree.origin
         } else {
@@ -141,14 +149,16 @@ impl Meshes {
         let facing = normals.iter().map(|normal| vector(*normal)).collect();
         let facing = upload("their normals", facing)?;
         let found = DeviceBuffer::new(compute, "their light", points.len())?;
-        let own: [(&str, &dyn Argument); 3] = [
+        let count = points.len() as u32;
+        let own: [(&str, &dyn Argument); 4] = [
+            ("end_point", &count),
             ("points", &places),
             ("normals", &facing),
             ("irradiances", &found),
         ];
         let tree = self.uploaded.arguments();
         let arguments = [&tree[..], &self.lights.arguments()[..], &own[..]].concat();
-        let items = ("first_point", "end_point", points.len() as u32);
+        let items = ("first_block", "end_block", count.div_ceil(shading.lanes));
         let under_way = &mut self.under_way;
         let lit = launch(compute, &shading.light_points, &arguments, items, under_way);
         let settled = self.settle(compute);

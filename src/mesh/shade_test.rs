@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::opencl::{Compute, Program, RendererOptions};
 use crate::reference;
 use crate::scene::kinds::for_each_kind;
-use crate::scene::{Camera, Profile, Scene, SourceKind};
+use crate::scene::{Camera, Lighting, Mesh, Profile, Scene, SourceKind, TriangleList};
 
 /// The error that light may have, relative to it: what the kernel's rules leave where the horizon cuts a core.
 const LIMIT: f64 = 5e-3;
@@ -26,6 +26,13 @@ macro_rules! define_specimens {
     };
 }
 for_each_kind!(define_specimens);
+
+/// Makes a mesh above all that is tested.
+fn hides_nothing() -> Result<Mesh> {
+    let corners = [[0.0, 0.0, 8.0], [0.1, 0.0, 8.0], [0.0, 0.1, 8.0]];
+    let triangles = TriangleList::new(corners.map(DVec3::from).to_vec(), vec![[0, 1, 2]])?;
+    Ok(Mesh::new(triangles))
+}
 
 /// Points around the sources, each with its normal: some see all of a core, some a part of it.
 fn places() -> (Vec<DVec3>, Vec<DVec3>) {
@@ -46,15 +53,22 @@ fn places() -> (Vec<DVec3>, Vec<DVec3>) {
 pub(super) fn shade_test(
     compute: &Compute,
     options: &RendererOptions,
-    (shading, program): (Shading, &Program),
+    (shading, program, has_shadows): (Shading, &Program, bool),
 ) -> Result<Shading> {
     let is_experiment = options.skips_self_test || compute.device().is_simulator;
     if is_experiment || program.was_tested() {
         return Ok(shading);
     }
     let mut tester = Meshes::new(options);
-    tester.shading = Some(shading);
-    let scene = specimens();
+    tester.shadings[usize::from(has_shadows)] = Some(shading);
+    let mut scene = specimens();
+    if has_shadows {
+        scene.meshes.push(hides_nothing()?);
+        scene.lighting = Some(Lighting {
+            shadows: true,
+            ..Lighting::default()
+        });
+    }
     let (points, normals) = places();
     let found = tester.irradiance(compute, &scene, &points, &normals)?;
     let expected = reference::irradiance(&scene, &points, &normals)?;
@@ -75,5 +89,7 @@ pub(super) fn shade_test(
     }
     program.mark_tested();
     let lost = || Error::Unsupported("the kernels of light were lost in their test".to_owned());
-    tester.shading.take().ok_or_else(lost)
+    tester.shadings[usize::from(has_shadows)]
+        .take()
+        .ok_or_else(lost)
 }
