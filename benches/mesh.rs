@@ -11,7 +11,9 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use energywave::glam::DVec3;
 use energywave::internals::Tree;
-use energywave::scene::{Antialias, Camera, Mesh, TriangleList};
+use energywave::scene::{
+    Antialias, Beam, Camera, Curve, Lighting, Mesh, Segment, Sphere, Torus, TriangleList,
+};
 use energywave::{Device, Renderer, Scene};
 
 /// Squares along a side: two triangles each.
@@ -50,6 +52,45 @@ fn ball() -> Mesh {
     })
 }
 
+/// Makes a scene of ten sources of five kinds, whose glow ends next to them.
+fn ten_sources() -> Scene {
+    let mut scene = Scene::new(Camera::new(DVec3::new(1.0, -8.0, 4.0), DVec3::ZERO));
+    for x in [-2.0, 0.25] {
+        let at = |right, back, up| DVec3::new(x + right, back, up);
+        scene.spheres.push(Sphere {
+            center: at(0.0, 0.5, 1.0),
+            ..Sphere::default()
+        });
+        scene
+            .segments
+            .push(Segment::new(at(0.45, 0.6, 0.1), at(0.45, 0.8, 2.0)));
+        scene.tori.push(Torus {
+            center: at(0.9, 0.2, 1.0),
+            axis: DVec3::new(0.12, -0.2, 1.0),
+            ..Torus::new(0.5)
+        });
+        let controls = [at(1.35, 0.0, 0.3), at(1.35, 1.0, 1.5), at(1.85, 0.0, 2.0)];
+        scene.curves.push(Curve::new(controls));
+        scene.beams.push(Beam {
+            tip: at(1.8, 1.0, 1.0),
+            ..Beam::new(DVec3::new(0.0, 0.2, 1.0))
+        });
+    }
+    scene
+}
+
+/// Returns how long the kernels of meshes take for so many frames, each seen from another place.
+fn turns(renderer: &mut Renderer, scene: &mut Scene, count: u64) -> Duration {
+    let mut sum = Duration::ZERO;
+    for turn in 0..count {
+        let turn = 0.1 * turn as f64;
+        scene.camera.eye = DVec3::new(8.0 * turn.sin(), -8.0 * turn.cos(), 4.0);
+        renderer.render(scene).unwrap();
+        sum += renderer.last_cost().meshes;
+    }
+    sum
+}
+
 fn meshes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("mesh");
     group.sample_size(10);
@@ -63,31 +104,23 @@ fn meshes(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("tree", name), |bencher| {
             bencher.iter(|| black_box(Tree::new(std::slice::from_ref(&mesh)).unwrap()));
         });
-        for (rays, antialias) in [
-            ("1 ray", Antialias::None),
-            ("16 rays", Antialias::Footprint),
+        let lit = Some(Lighting::default());
+        for (rays, antialias, lighting) in [
+            ("1 ray", Antialias::None, None),
+            ("16 rays", Antialias::Footprint, None),
+            ("1 ray, lit by ten sources", Antialias::None, lit),
+            ("16 rays, lit by ten sources", Antialias::Footprint, lit),
         ] {
-            let mut scene = Scene::new(Camera::new(DVec3::new(1.0, -8.0, 4.0), DVec3::ZERO));
+            let mut scene = ten_sources();
             scene.integration.antialias = antialias;
+            scene.lighting = lighting;
             scene.meshes.push(mesh.clone());
+            let name = BenchmarkId::new(format!("kernels, {rays}"), name);
             let mut renderer = Renderer::new(&Device::select("cpu").unwrap()).unwrap();
             renderer.render(&scene).unwrap();
-            let mut turn: f64 = 0.0;
-            group.bench_function(
-                BenchmarkId::new(format!("kernels, {rays}"), name),
-                |bencher| {
-                    bencher.iter_custom(|count| {
-                        let mut sum = Duration::ZERO;
-                        for _ in 0..count {
-                            turn += 0.1;
-                            scene.camera.eye = DVec3::new(8.0 * turn.sin(), -8.0 * turn.cos(), 4.0);
-                            renderer.render(&scene).unwrap();
-                            sum += renderer.last_cost().kernel;
-                        }
-                        sum
-                    });
-                },
-            );
+            group.bench_function(name, |bencher| {
+                bencher.iter_custom(|count| turns(&mut renderer, &mut scene, count))
+            });
         }
     }
     group.finish();

@@ -45,24 +45,24 @@ INLINE bool is_alike(__global const MeshTriangle *const one, __global const Mesh
 #endif
 }
 
-// Returns the next rays of a pixel, from a part on, that go together; none at the end.
+// Returns the next rays of a pixel, from one of its columns and rows on, that go together; none at the end.
 INLINE Run next_run(TREE_PARAMETERS, const MeshSight *const sight, const MetRays *const met, const uint column,
-                    const uint row, uint *const part) {
+                    const uint row, uint2 *const next) {
     Run run = {0.0f, 0.0f, 0.0f, 0.0f, NOTHING};
-    for (; *part < sight->across * sight->across; ++*part) {
-        const uint x = column * sight->across + *part % sight->across;
-        const uint y = row * sight->across + *part / sight->across;
-        const uint place = y * sight->width + x;
-        const uint triangle = met->triangles[place];
-        const float length = met->lengths[place];
-        if (triangle == NOTHING || (met->has_finals && length > met->finals[place] * (1.0f + ROUNDING)))
-            continue;
-        if (run.triangle == NOTHING)
-            run.triangle = triangle;
-        else if (!is_alike(tree_triangles + triangle, tree_triangles + run.triangle))
-            break;
-        run.columns += (float)x, run.rows += (float)y, run.lengths += length, run.count += 1.0f;
-    }
+    for (; next->y < sight->across; ++next->y, next->x = 0u)
+        for (; next->x < sight->across; ++next->x) {
+            const uint x = column * sight->across + next->x, y = row * sight->across + next->y;
+            const uint place = y * sight->width + x;
+            const uint triangle = met->triangles[place];
+            const float length = met->lengths[place];
+            if (triangle == NOTHING || (met->has_finals && length > met->finals[place] * (1.0f + ROUNDING)))
+                continue;
+            if (run.triangle == NOTHING)
+                run.triangle = triangle;
+            else if (!is_alike(tree_triangles + triangle, tree_triangles + run.triangle))
+                return run;
+            run.columns += (float)x, run.rows += (float)y, run.lengths += length, run.count += 1.0f;
+        }
     return run;
 }
 
@@ -136,9 +136,9 @@ __kernel void shade_meshes(TREE_PARAMETERS, LIGHTS_PARAMETERS, const MeshSight s
     const uint first_column = block % across * BLOCK_COLUMNS, first_row = block / across * BLOCK_ROWS;
     const MetRays met = {lengths, triangles, finals, has_finals};
     float3v sum = uniform3((float4)(0.0f));
-    uint parts[LANES];
+    uint2 next[LANES];
     for (uint lane = 0u; lane < LANES; ++lane)
-        parts[lane] = 0u;
+        next[lane] = (uint2)(0u);
     for (;;) {
         Runs runs;
         float count = 0.0f;
@@ -146,7 +146,7 @@ __kernel void shade_meshes(TREE_PARAMETERS, LIGHTS_PARAMETERS, const MeshSight s
             const uint column = first_column + lane % BLOCK_COLUMNS, row = first_row + lane / BLOCK_COLUMNS;
             Run run = {0.0f, 0.0f, 0.0f, 0.0f, NOTHING};
             if (column < width && row < height)
-                run = next_run(TREE_ARGUMENTS, &sight, &met, column, row, parts + lane);
+                run = next_run(TREE_ARGUMENTS, &sight, &met, column, row, next + lane);
             const uint triangle = run.triangle == NOTHING ? 0u : run.triangle;
             put_run(&runs, lane, &run, tree_triangles + triangle, albedos[tree_triangles[triangle].mesh]);
             count += run.count;

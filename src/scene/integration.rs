@@ -120,6 +120,9 @@ pub struct Integration {
     pub antialias: Antialias,
     /// Softening radius epsilon, world units: the squared distance to every core grows by its square.
     pub softening: f64,
+    /// Whether meshes, metaballs and colliders hide the light behind them; without, they are seen through all of it, as
+    /// in 2010 without hidden surfaces.
+    pub hidden_surfaces: bool,
 }
 
 impl Default for Integration {
@@ -130,6 +133,7 @@ impl Default for Integration {
             reduction: Reduction::Sum,
             antialias: Antialias::default(),
             softening: 0.0,
+            hidden_surfaces: true,
         }
     }
 }

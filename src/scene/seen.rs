@@ -79,10 +79,13 @@ impl SeenSurfaces {
         }
     }
 
-    /// Returns the light of a scene that surfaces leave: they are gone, but hide what is behind them.
+    /// Returns the light of a scene that surfaces leave: they are gone, but hide what is behind them, if they do.
     pub(crate) fn left_of(&self, scene: &Scene) -> Scene {
         Scene {
-            depth: Some(self.depth.clone()),
+            depth: match scene.integration.hidden_surfaces {
+                true => Some(self.depth.clone()),
+                false => scene.depth.clone(),
+            },
             meshes: List::new(),
             metaballs: List::new(),
             ..scene.clone()

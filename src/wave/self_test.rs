@@ -270,6 +270,7 @@ fn integration(task: Task, softening: f64) -> Integration {
             Reduced::Sum => Reduction::Sum,
             Reduced::Root | Reduced::RootOfSquares => Reduction::Rms,
         },
+        ..Integration::default()
     }
 }
 

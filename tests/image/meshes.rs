@@ -314,3 +314,27 @@ fn what_rays_met_is_kept_until_something_changes() {
     assert_eq!(launches(&scene), first);
     assert_eq!(launches(&scene), again);
 }
+
+#[test]
+fn surfaces_that_hide_nothing_are_seen_through_all_light() {
+    let mut renderer = renderer("");
+    let camera = || Camera::new(-4.0 * DVec3::Y, DVec3::ZERO);
+    let mut scene = scene_of(camera(), [square(0.0, 0.7)]);
+    let surfaces = renderer.render(&scene).unwrap();
+    scene.spheres.push(glow(1.0));
+    let hidden = renderer.render(&scene).unwrap();
+    scene.integration.hidden_surfaces = false;
+    let through = renderer.render(&scene).unwrap();
+    scene.meshes.clear();
+    let light = renderer.render(&scene).unwrap();
+    let sum = surfaces.as_slice().iter().zip(light.as_slice());
+    let differs = |image: &RadianceImage| {
+        let pairs = sum.clone().zip(image.as_slice()).enumerate();
+        let off = |(index, ((a, b), c)): (usize, ((&f32, &f32), &f32))| {
+            index % 4 < 3 && (a + b - c).abs() > ROUNDING * c.abs()
+        };
+        pairs.filter(|pair| off(*pair)).count()
+    };
+    assert_eq!(differs(&through), 0);
+    assert!(differs(&hidden) > 600);
+}

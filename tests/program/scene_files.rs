@@ -9,8 +9,7 @@ use energywave::image::{
 use energywave::internals::KINDS;
 use energywave::scene::{
     Antialias, Beam, BeamEnd, Camera, Curve, Cylinder, Dashes, Decay, ElectricArc, Integration,
-    Layer, LightPath, Measure, Method, PathShape, Profile, Reduction, Sampling, Segment, Sphere,
-    Torus,
+    Layer, LightPath, Measure, Method, PathShape, Profile, Sampling, Segment, Sphere, Torus,
 };
 use energywave::{ErrorKind, Scene};
 use fastrand::Rng;
@@ -208,12 +207,12 @@ fn rich_scenes() -> Vec<Scene> {
             antialias: Antialias::None,
             method,
             measure: [Measure::Parameter, Measure::Length][index % 2],
-            reduction: Reduction::Sum, // of as many sources
             softening: [0.0, number(random)][index / 2 % 2],
+            hidden_surfaces: index % 2 == 0,
+            ..Integration::default()
         };
-        let stops = Exposure::Stops(number(random).min(99.0));
         scene.display = Display {
-            exposure: [stops, Exposure::Auto][index % 2],
+            exposure: [Exposure::Stops(number(random).min(99.0)), Exposure::Auto][index % 2],
             tone_map: [ToneMap::KhronosNeutral, ToneMap::Clamp][index / 2 % 2],
             alpha: [Alpha::Opaque, Alpha::Additive, Alpha::Luminance][index % 3],
             background: (index % 2 == 0).then_some(Background::Color([0.1, 0.0, 1.0])),

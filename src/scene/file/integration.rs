@@ -24,6 +24,13 @@ pub(super) struct IntegrationTable {
     reduction: Reduction,
     antialias: Antialias,
     softening: f64,
+    #[serde(skip_serializing_if = "is_true")]
+    hidden_surfaces: bool,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
+fn is_true(flag: &bool) -> bool {
+    *flag
 }
 
 // What is read of `[integration]`.
@@ -42,6 +49,7 @@ keys! { pub(in crate::scene) INTEGRATION_KEYS;
     antialias: Word(&["footprint", "none"]), NONE, Value("\"footprint\""),
         "exact: a pixel is the mean over its square, or what one ray gets";
     softening: NOT_NEGATIVE, WORLD, Value("0"), "its square is added to every squared distance to a core";
+    hidden_surfaces: Flag, NONE, Value("true"), "whether surfaces hide the light behind them";
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
@@ -59,6 +67,7 @@ impl Default for IntegrationTable {
             reduction,
             antialias,
             softening,
+            hidden_surfaces,
             ..
         } = Integration::default();
         Self {
@@ -71,6 +80,7 @@ impl Default for IntegrationTable {
             reduction,
             antialias,
             softening,
+            hidden_surfaces,
         }
     }
 }
@@ -119,6 +129,7 @@ impl IntegrationTable {
             reduction: self.reduction,
             antialias: self.antialias,
             softening: self.softening,
+            hidden_surfaces: self.hidden_surfaces,
         }
     }
 
@@ -128,6 +139,7 @@ impl IntegrationTable {
             reduction: integration.reduction,
             antialias: integration.antialias,
             softening: integration.softening,
+            hidden_surfaces: integration.hidden_surfaces,
             ..Self::default()
         };
         match integration.method {
