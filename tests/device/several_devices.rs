@@ -8,7 +8,8 @@ use crate::common::apart::apart;
 use crate::common::program::{Folder, device, expect, stderr};
 use energywave::image::DepthAlong;
 use energywave::scene::{
-    Antialias, Collider, Lattice, LightElement, Metaballs, Method, Particles, PointList, Sampling,
+    Antialias, Collider, Lattice, LightElement, Lighting, Metaballs, Method, Particles, PointList,
+    Sampling,
 };
 use energywave::verify::built_in_rays;
 use energywave::{Device, Devices, Error, RadianceImage, Renderer, RendererOptions, Scene};
@@ -143,7 +144,7 @@ fn equal_devices_draw_the_image_of_one_to_the_bit() {
     });
 }
 
-/// A ring among particles, streaks, metaballs and a ball.
+/// A ring among particles, streaks, metaballs, a ball and a mesh that it lights.
 fn crowded(antialias: Antialias) -> Scene {
     let mut scene = ring(90, 70, Some(Sampling::Pixels));
     scene.integration.antialias = antialias;
@@ -168,6 +169,10 @@ fn crowded(antialias: Antialias) -> Scene {
     }
     let ball = Collider::sphere(DVec3::new(-0.7, 0.1, 0.2), 0.3);
     scene.colliders.push(ball);
+    let mut mesh = common::meshes::ball(8);
+    (mesh.scale, mesh.translate) = (0.3, DVec3::new(0.7, 0.2, 0.1));
+    scene.meshes.push(mesh);
+    scene.lighting = Some(Lighting::default());
     scene
 }
 
@@ -192,6 +197,8 @@ fn equal_devices_draw_particles_and_surfaces_as_one_does() {
                     |scene: &mut Scene| scene.particles.clear(),
                     |scene: &mut Scene| scene.light_elements.clear(),
                     |scene: &mut Scene| scene.colliders.clear(),
+                    |scene: &mut Scene| scene.meshes.clear(),
+                    |scene: &mut Scene| scene.lighting = None,
                 ] {
                     let mut less = scene.clone();
                     remove(&mut less);
