@@ -5,7 +5,7 @@ use energywave::{Renderer, reference};
 use glam::DVec3;
 
 use super::cast_cases::{Case, RADIUS, cases};
-use super::common::{device, renderer};
+use super::common::{device, lane_widths, renderer};
 
 /// Points of surfaces for each source.
 const POINTS: usize = 200;
@@ -18,6 +18,9 @@ const STANDARD_ERROR: f64 = 2e-3;
 
 /// What is dark for both: a share of what would fall on a surface that faces each place of the core.
 const DARK: f64 = 1e-4;
+
+/// How far lanes beside it may change a point's light: they have as many nodes as the one that needs most.
+const BY_LANES: f32 = 5e-3;
 
 /// The error that the kernel may have against the reference: of one point in a hundred, and of all.
 const USUAL: f64 = 5e-3;
@@ -173,5 +176,37 @@ fn every_core_casts_the_light_of_its_places() {
                 case.name
             );
         }
+    }
+}
+
+/// Returns by how much two lights of the same points differ, of the first one, or of a little of the greatest.
+fn difference(one: &[[f32; 3]], other: &[[f32; 3]]) -> f32 {
+    let most = one.iter().map(|it| it[0]).fold(0.0, f32::max);
+    let pairs = one.iter().zip(other);
+    let off = pairs.map(|(one, other)| (one[0] - other[0]).abs() / one[0].abs().max(1e-4 * most));
+    off.fold(0.0, |most, off| if off <= most { most } else { off })
+}
+
+#[test]
+fn light_is_the_same_on_every_lane_width() {
+    let mut renderers: Vec<(u32, Renderer)> = (lane_widths().into_iter())
+        .map(|lanes| (lanes, renderer(lanes, "")))
+        .collect();
+    for case in cases() {
+        let (points, normals) = places(&case);
+        let (_, first) = &mut renderers[0];
+        let expected = first.irradiance(&case.scene, &points, &normals).unwrap();
+        for (lanes, renderer) in &mut renderers[1..] {
+            let found = renderer.irradiance(&case.scene, &points, &normals).unwrap();
+            let off = difference(&expected, &found);
+            println!("{}, {lanes} lanes: {off:.1e}", case.name);
+            assert!(off < BY_LANES, "{}, {lanes} lanes: {off:.1e}", case.name);
+        }
+        let turned: Vec<DVec3> = normals.iter().map(|normal| -*normal).collect();
+        let behind = renderers[0]
+            .1
+            .irradiance(&case.scene, &points, &turned)
+            .unwrap();
+        assert!(difference(&expected, &behind) > BY_LANES, "{}", case.name);
     }
 }
