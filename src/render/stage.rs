@@ -77,8 +77,8 @@ impl Scene {
 }
 
 impl Renderer {
-    /// Returns a scene with the light of its waves at its moment in their place, and colliders that are seen meshes among
-    /// its meshes; `None`: it has neither.
+    /// Returns a scene with the light of its waves at its moment in their place, and colliders that are seen meshes
+    /// among its meshes; `None`: it has neither.
     pub(super) fn simulated(&mut self, scene: &Scene) -> Result<Option<Scene>> {
         let simulated = self.simulated_waves(scene)?;
         let given = simulated.as_ref().unwrap_or(scene);
