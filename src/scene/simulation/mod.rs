@@ -121,8 +121,8 @@ impl Scene {
             return Ok(());
         };
         let message = format!(
-            "\"accelerate\" pushes particles out of what they have entered, and the mesh of collider[{collider}] is open \
-             and has no inside: close it, or write response = \"replace\""
+            "\"accelerate\" pushes particles out of what they have entered, and the mesh of collider[{collider}] \
+             is open and has no inside: close it, or write response = \"replace\""
         );
         Err(Fault::new("response", message).of(&format!("wave[{wave}]")))
     }
