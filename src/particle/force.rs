@@ -30,6 +30,8 @@ pub(super) struct Touch {
     pub solid: usize,
     /// Where it enters, H.
     pub point: DVec3,
+    /// Where it is put, which is there or a little before.
+    pub place: DVec3,
     /// Outwards there.
     pub normal: DVec3,
     /// Where its step was to end.
@@ -87,7 +89,7 @@ impl Laws {
                     body.phase = Phase::Within;
                     body.velocity += push;
                 }
-                _ => (body.position, body.velocity) = (touch.point, push),
+                _ => (body.position, body.velocity) = (touch.place, push),
             }
         }
         state.bodies[touch.index] = body;
@@ -116,15 +118,17 @@ impl Laws {
         };
         let mut normals = vec![touch.normal];
         let mut push = penalty(touch.normal);
-        for (index, solid) in self.solids.iter().enumerate() {
+        for (index, solid) in self.solids.iter().enumerate().filter(|_| touch.is_new) {
             // Where it touches several at once, all push.
-            if touch.is_new && index != touch.solid && solid.touches(touch.point) {
-                let normal = solid.normal(touch.point);
-                if velocity.dot(normal) < 0.0 {
-                    push += penalty(normal);
-                }
-                normals.push(normal);
-            }
+            let (front, known) = (
+                (index == touch.solid).then_some(touch.normal),
+                normals.len(),
+            );
+            solid.faces(touch.point, velocity, front, &mut normals);
+            let pushing = normals[known..]
+                .iter()
+                .filter(|it| velocity.dot(**it) < 0.0);
+            push += pushing.map(|normal| penalty(*normal)).sum::<DVec3>();
         }
         let repulsion = rule.repulsion * wave.repulsion * pull;
         let middle = || normals.iter().sum::<DVec3>().normalize_or(touch.normal);

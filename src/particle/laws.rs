@@ -45,6 +45,8 @@ pub(super) struct Law {
 pub(super) struct Laws {
     pub waves: Vec<Law>,
     pub solids: Vec<Solid>,
+    /// How far before what they hit particles are put, world units: 0 where there is no mesh.
+    pub clearance: f64,
     pub seed: u32,
     /// How long a frame lasts, seconds.
     pub frame: f64,
@@ -74,9 +76,12 @@ impl Laws {
                 _ => Rule::CORRECTED,
             },
         };
+        let solids: Vec<Solid> = scene.colliders.iter().map(Solid::new).collect();
+        let clearances = solids.iter().map(Solid::clearance);
         Self {
             waves: scene.waves.iter().map(law).collect(),
-            solids: scene.colliders.iter().map(Solid::new).collect(),
+            clearance: clearances.fold(0.0, f64::max),
+            solids,
             seed: settings.seed,
             frame: settings.frame,
             sweeps: true,

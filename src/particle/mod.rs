@@ -4,6 +4,7 @@
 //! A [`Simulation`] gives, for every frame, the light of all particles ([`LightElement`]) and where they hit something
 //! ([`Contact`]). The renderer draws that light.
 
+mod facets;
 mod force;
 mod history;
 mod laws;

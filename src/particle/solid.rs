@@ -1,15 +1,19 @@
-//! Colliders as the simulation asks them: how far a point is outside, and where a motion enters.
+//! Colliders as the simulation asks them: how far a point is outside, and where a motion enters. Meshes are in
+//! `facets.rs`.
+
+use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
+use super::facets::Facets;
 use crate::scene::{Collider, ColliderShape, Rotation};
 
 /// So far within a solid, as a part of where and how large it is, a point still lies on its surface: rounding of points
 /// that were put there.
-const TOUCH: f64 = 1e-12;
+pub(super) const TOUCH: f64 = 1e-12;
 
 /// A motion that begins on a surface enters if it has such a part of its length against the normal.
-const INWARD: f64 = 1e-9;
+pub(super) const INWARD: f64 = 1e-9;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Solid {
@@ -34,7 +38,11 @@ enum Form {
         point: DVec3,
         normal: DVec3,
     },
+    Mesh(Arc<Facets>),
 }
+
+/// What touches a mesh is put back from what it hits by so many times what still touches.
+const CLEAR: f64 = 4.0;
 
 /// Where a motion enters a solid.
 #[derive(Debug, Clone, Copy)]
@@ -47,8 +55,8 @@ pub(crate) struct Entry {
 
 impl Solid {
     pub(crate) fn new(collider: &Collider) -> Self {
-        let (form, size) = match collider.shape {
-            ColliderShape::Box {
+        let (form, size) = match &collider.shape {
+            &ColliderShape::Box {
                 center,
                 half,
                 rotation,
@@ -59,12 +67,17 @@ impl Solid {
                     center.length() + half.length(),
                 )
             }
-            ColliderShape::Sphere { center, radius } => {
+            &ColliderShape::Sphere { center, radius } => {
                 (Form::Sphere { center, radius }, center.length() + radius)
             }
-            ColliderShape::Plane { point, normal } => {
+            &ColliderShape::Plane { point, normal } => {
                 let normal = normal.normalize();
                 (Form::Plane { point, normal }, point.length() + 1.0)
+            }
+            ColliderShape::Mesh(mesh) => {
+                let facets = Facets::new(mesh);
+                let size = facets.touch() / TOUCH;
+                (Form::Mesh(facets.into()), size)
             }
         };
         Self {
@@ -85,6 +98,36 @@ impl Solid {
                 point: base,
                 normal,
             } => (point - *base).dot(*normal),
+            Form::Mesh(facets) => facets.distance(point),
+        }
+    }
+
+    /// Returns whether what left its surface cannot hit it again on the straight way from there.
+    pub(super) fn is_convex(&self) -> bool {
+        !matches!(self.form, Form::Mesh(_))
+    }
+
+    /// Returns how far from its surface particles are put that hit something, where that is not left to rounding.
+    pub(super) fn clearance(&self) -> f64 {
+        match self.is_convex() {
+            true => 0.0,
+            false => CLEAR * self.touch,
+        }
+    }
+
+    /// Adds the normals of its faces that a point lies on, or within by rounding; those of a mesh are on the side of
+    /// `front`, one of them, or where the velocity comes from.
+    pub(super) fn faces(
+        &self,
+        point: DVec3,
+        velocity: DVec3,
+        front: Option<DVec3>,
+        normals: &mut Vec<DVec3>,
+    ) {
+        match &self.form {
+            Form::Mesh(facets) => facets.normals_at(point, velocity, front, normals),
+            _ if front.is_none() && self.touches(point) => normals.push(self.normal(point)),
+            _ => {}
         }
     }
 
@@ -102,11 +145,12 @@ impl Solid {
             }
             Form::Sphere { center, .. } => (point - *center).normalize_or(DVec3::Z),
             Form::Plane { normal, .. } => *normal,
+            Form::Mesh(facets) => facets.normal(point),
         }
     }
 
     /// Returns whether a point lies on the surface, or within it by rounding.
-    pub(super) fn touches(&self, point: DVec3) -> bool {
+    fn touches(&self, point: DVec3) -> bool {
         self.distance(point).abs() <= self.touch
     }
 
@@ -133,6 +177,7 @@ impl Solid {
                     normal: *normal,
                 })
             }
+            Form::Mesh(facets) => facets.entry(point, motion, most),
         };
         entry.filter(|entry| entry.share <= most)
     }
@@ -200,7 +245,7 @@ impl Solid {
 }
 
 /// Makes the turn about an axis by an angle (Rodrigues), with sine and cosine that are the same everywhere.
-fn turn(rotation: Rotation) -> DMat3 {
+pub(super) fn turn(rotation: Rotation) -> DMat3 {
     let axis = rotation.axis.normalize();
     let (sin, cos) = libm::sincos(rotation.angle.to_radians());
     let turned = |v: DVec3| v * cos + axis.cross(v) * sin + axis * axis.dot(v) * (1.0 - cos);

@@ -113,6 +113,7 @@ impl Laws {
                     index,
                     solid,
                     point: begin + entry.share * motion,
+                    place: begin + self.share_before(&entry, motion) * motion,
                     normal: entry.normal,
                     end: body.position,
                     time: now + (1.0 - rest) + entry.share * rest,
@@ -121,6 +122,16 @@ impl Laws {
             } else if body.phase == Phase::Within {
                 self.stay_or_leave(body, &state.impacts[index], index, touches);
             }
+        }
+    }
+
+    /// Returns at which share of its motion a particle is still before what it hits, where there are meshes: the way to
+    /// there is free, whatever rounding makes of the point where it hits.
+    fn share_before(&self, entry: &Entry, motion: DVec3) -> f64 {
+        let inward = -motion.dot(entry.normal);
+        match self.clearance > 0.0 && inward > 0.0 {
+            true => (entry.share - self.clearance / inward).max(0.0),
+            false => entry.share,
         }
     }
 
@@ -139,6 +150,7 @@ impl Laws {
                 index,
                 solid,
                 point: impact.point,
+                place: body.position,
                 normal: impact.normal,
                 end: body.position,
                 time: 0.0,
@@ -153,7 +165,7 @@ impl Laws {
     fn meeting(&self, body: &Body, motion: DVec3) -> Option<Meeting> {
         let mut first: Option<Meeting> = None;
         for (index, solid) in self.solids.iter().enumerate() {
-            if body.hit as usize == index + 1 {
+            if body.hit as usize == index + 1 && solid.is_convex() {
                 continue;
             }
             let found = match self.sweeps {

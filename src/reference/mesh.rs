@@ -1,5 +1,4 @@
-//! Meshes in float64, by another method than the kernels': triangles halved along the longest axis of the box around
-//! them, and each that a ray may meet solved for its three unknowns (Moeller, Trumbore 1997).
+//! Meshes in float64, by another method than the kernels': in halves of halves (`src/scene/mesh/halves.rs`).
 
 use std::f64::consts::PI;
 
@@ -9,33 +8,14 @@ use super::irradiance::Caster;
 
 use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage};
-use crate::scene::{AMBIENT, LAMP, Mesh, Scene, SeenSurfaces, ViewPlane};
+use crate::scene::{AMBIENT, Halves, LAMP, Mesh, Scene, SeenSurfaces, ViewPlane};
 use crate::threads;
-
-/// Triangles that are halved no further.
-const LEAF: usize = 4;
-
-/// A ray within this share of an edge meets the triangle: of two that share it, at least one.
-const EDGE: f64 = 1e-12;
 
 /// A ray still sees what its length, in float32, ends before by this share.
 const ROUNDING: f64 = 1e-6;
 
 /// How near to an end of a way nothing hides it, as a share of the size of all meshes.
 const MARGIN: f64 = 1e-7;
-
-/// Triangles in halves of halves.
-#[derive(Debug)]
-struct Halves {
-    triangles: Vec<Triangle>,
-    nodes: Vec<Node>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Triangle {
-    corners: [DVec3; 3],
-    mesh: usize,
-}
 
 /// What hides light from surfaces: the triangles of all meshes.
 #[derive(Debug)]
@@ -51,7 +31,8 @@ impl Hiding {
     /// Makes that of meshes; `None` of none.
     pub(super) fn new(meshes: &[Mesh]) -> Option<Self> {
         let halves = (!meshes.is_empty()).then(|| Halves::new(meshes))?;
-        let size = halves.nodes[0].low.distance(halves.nodes[0].high);
+        let (low, high) = halves.bounds();
+        let size = low.distance(high);
         Some(Self {
             halves,
             margin: MARGIN * size,
@@ -63,19 +44,9 @@ impl Hiding {
     pub(super) fn hides(&self, from: DVec3, to: DVec3) -> bool {
         let length = from.distance(to);
         let direction = (to - from) / length;
-        let met = self.halves.nearest(from, direction, &mut Vec::new());
+        let met = nearest(&self.halves, from, direction);
         met.length > self.margin && met.length < length - self.margin
     }
-}
-
-/// A box around triangles, or around two boxes.
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    low: DVec3,
-    high: DVec3,
-    first: usize,
-    /// Of triangles; 0: there are two boxes.
-    count: usize,
 }
 
 /// What a ray meets of meshes.
@@ -98,127 +69,18 @@ impl MeshRay {
     };
 }
 
-impl Triangle {
-    fn center(&self, axis: usize) -> f64 {
-        let at = |corner: DVec3| corner.to_array()[axis];
-        self.corners.iter().map(|corner| at(*corner)).sum()
-    }
-
-    /// Returns how far along a ray it is met.
-    fn distance(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
-        let [a, b, c] = self.corners;
-        let (ab, ac, from_a) = (b - a, c - a, origin - a);
-        let across = direction.cross(ac);
-        let volume = ab.dot(across);
-        let turned = from_a.cross(ab);
-        let (u, v) = (from_a.dot(across) / volume, direction.dot(turned) / volume);
-        let distance = ac.dot(turned) / volume;
-        (u >= -EDGE && v >= -EDGE && u + v <= 1.0 + EDGE && distance > 0.0).then_some(distance)
-    }
-}
-
-impl Halves {
-    fn new(meshes: &[Mesh]) -> Self {
-        let mut triangles = Vec::new();
-        for (number, mesh) in meshes.iter().enumerate() {
-            let placed = mesh.placed_vertices();
-            let corners = mesh.triangles.triangles().iter();
-            triangles.extend(corners.map(|corners| Triangle {
-                corners: corners.map(|corner| placed[corner as usize]),
-                mesh: number,
-            }));
+/// Returns what a ray meets first.
+fn nearest(halves: &Halves, origin: DVec3, direction: DVec3) -> MeshRay {
+    let met = halves.nearest(origin, direction);
+    met.map_or(MeshRay::NONE, |(length, triangle)| {
+        let normal = triangle.normal();
+        let away = normal.dot(direction) > 0.0;
+        MeshRay {
+            length,
+            normal: if away { -normal } else { normal },
+            mesh: triangle.mesh,
         }
-        let mut nodes = vec![node_of(&triangles, 0)];
-        let mut waiting = vec![(0, 0, triangles.len())];
-        while let Some((number, begin, end)) = waiting.pop() {
-            if end - begin <= LEAF {
-                continue;
-            }
-            let size: DVec3 = nodes[number].high - nodes[number].low;
-            let axis = size.max_position();
-            let middle = begin + (end - begin) / 2;
-            triangles[begin..end].select_nth_unstable_by(middle - begin, |one, other| {
-                one.center(axis).total_cmp(&other.center(axis))
-            });
-            let first = nodes.len();
-            (nodes[number].first, nodes[number].count) = (first, 0);
-            for (place, (begin, end)) in [(begin, middle), (middle, end)].into_iter().enumerate() {
-                nodes.push(node_of(&triangles[begin..end], begin));
-                waiting.push((first + place, begin, end));
-            }
-        }
-        Self { triangles, nodes }
-    }
-
-    /// Returns what a ray meets first.
-    fn nearest(&self, origin: DVec3, direction: DVec3, waiting: &mut Vec<usize>) -> MeshRay {
-        let (mut length, mut met) = (f64::INFINITY, None);
-        let inverse = direction.recip();
-        waiting.clear();
-        waiting.push(0);
-        while let Some(number) = waiting.pop() {
-            let node = &self.nodes[number];
-            if !node.is_met(origin, inverse, length) {
-                continue;
-            }
-            if node.count == 0 {
-                // The nearer one is looked at first.
-                let (one, other) = (&self.nodes[node.first], &self.nodes[node.first + 1]);
-                let way = (other.low + other.high - one.low - one.high).dot(direction);
-                let second = usize::from(way < 0.0);
-                waiting.extend([node.first + 1 - second, node.first + second]);
-                continue;
-            }
-            for triangle in &self.triangles[node.first..node.first + node.count] {
-                if let Some(found) = triangle
-                    .distance(origin, direction)
-                    .filter(|it| *it < length)
-                {
-                    (length, met) = (found, Some(triangle));
-                }
-            }
-        }
-        met.map_or(MeshRay::NONE, |triangle| {
-            let [a, b, c] = triangle.corners;
-            let normal = (b - a).cross(c - a).normalize_or(DVec3::Z);
-            let mesh = triangle.mesh;
-            let away = normal.dot(direction) > 0.0;
-            let normal = if away { -normal } else { normal };
-            MeshRay {
-                length,
-                normal,
-                mesh,
-            }
-        })
-    }
-}
-
-impl Node {
-    fn is_met(&self, origin: DVec3, inverse: DVec3, most: f64) -> bool {
-        // Along an axis that the ray does not go along, 0 times infinity is no number, which min and max pass over.
-        let (low, high) = (
-            (self.low - origin) * inverse,
-            (self.high - origin) * inverse,
-        );
-        let pairs = low.to_array().into_iter().zip(high.to_array());
-        let (first, last) = pairs.fold((0.0_f64, most), |(first, last), (low, high)| {
-            (first.max(low.min(high)), last.min(low.max(high)))
-        });
-        first <= last * (1.0 + 1e-12)
-    }
-}
-
-fn node_of(triangles: &[Triangle], first: usize) -> Node {
-    let corners = triangles.iter().flat_map(|it| it.corners);
-    let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = corners.fold(empty, |(low, high), it| (low.min(it), high.max(it)));
-    let count = triangles.len();
-    Node {
-        low,
-        high,
-        first,
-        count,
-    }
+    })
 }
 
 /// Traces the rays of a grid, so many across a pixel, to the meshes of a scene; by rows from the top left.
@@ -230,10 +92,9 @@ pub fn mesh_rays(scene: &Scene, across: u32) -> Vec<MeshRay> {
     let width = grid.width as usize;
     let mut rays = vec![MeshRay::NONE; grid.pixels()];
     threads::for_each_chunk(&mut rays, width, |row, rays| {
-        let mut waiting = Vec::new();
         for (column, ray) in rays.iter_mut().enumerate() {
             let (from, direction, _) = line(&plane, column, row);
-            *ray = halves.nearest(from, direction, &mut waiting);
+            *ray = nearest(&halves, from, direction);
         }
     });
     rays

@@ -77,8 +77,15 @@ impl Scene {
 }
 
 impl Renderer {
-    /// Returns a scene with the light of its waves at its moment in their place; `None`: it has no waves.
+    /// Returns a scene with the light of its waves at its moment in their place, and colliders that are seen meshes
+    /// among its meshes; `None`: it has neither.
     pub(super) fn simulated(&mut self, scene: &Scene) -> Result<Option<Scene>> {
+        let simulated = self.simulated_waves(scene)?;
+        let given = simulated.as_ref().unwrap_or(scene);
+        Ok(with_meshes(given).or(simulated))
+    }
+
+    fn simulated_waves(&mut self, scene: &Scene) -> Result<Option<Scene>> {
         if scene.waves.is_empty() {
             return Ok(None);
         }
@@ -203,6 +210,19 @@ impl Traced {
     }
 }
 
+/// Returns a scene whose colliders that are seen meshes are meshes; `None`: there are none.
+fn with_meshes(scene: &Scene) -> Option<Scene> {
+    let (meshes, others): (Vec<&Collider>, Vec<&Collider>) =
+        scene.colliders.iter().partition(|it| it.is_seen_mesh());
+    let seen = meshes.into_iter().filter_map(Collider::seen_mesh);
+    let meshes: List<_> = scene.meshes.iter().cloned().chain(seen).collect();
+    (meshes.len() > scene.meshes.len()).then(|| Scene {
+        meshes,
+        colliders: others.into_iter().cloned().collect(),
+        ..scene.clone()
+    })
+}
+
 fn visible(scene: &Scene) -> Vec<Seen> {
     let visible = scene.colliders.iter().filter(|collider| collider.visible);
     let seen = visible.map(|collider| Seen {
@@ -228,7 +248,7 @@ fn window(scene: &Scene, plane: &ViewPlane, grid: ImageSize) -> [Range<usize>; 2
                 Some(_) => (center, DVec3::splat(half.length())),
             },
             ColliderShape::Sphere { center, radius } => (center, DVec3::splat(radius)),
-            ColliderShape::Plane { .. } => return all,
+            ColliderShape::Plane { .. } | ColliderShape::Mesh(_) => return all,
         };
         for corner in 0..8_u32 {
             let side = |axis: u32| f64::from(corner >> axis & 1) * 2.0 - 1.0;

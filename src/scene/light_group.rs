@@ -57,7 +57,10 @@ macro_rules! define_light_groups {
                 }
                 scene.colliders = self.colliders.clone();
                 match group {
-                    Some(_) => scene.colliders.iter_mut().for_each(|it| it.color = DVec3::ZERO),
+                    Some(_) => scene.colliders.iter_mut().for_each(|it| {
+                        let is_lit = self.lighting.is_some() && it.is_seen_mesh();
+                        it.color *= f64::from(u8::from(is_lit));
+                    }),
                     None => {
                         scene.particles = self.particles.clone();
                         scene.light_elements = self.light_elements.clone();

@@ -73,6 +73,7 @@ pub use integration::{
 pub use light_element::LightElement;
 pub use lighting::{Lighting, Sun};
 pub use list::List;
+pub(crate) use mesh::{Halves, Triangle};
 pub use mesh::{Mesh, TriangleList};
 pub(crate) use metaballs::{AMBIENT, LAMP};
 pub use metaballs::{MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs};

@@ -148,7 +148,8 @@ impl Scene {
 
     /// Says that light is to be cast, and on nothing.
     fn nothing_to_light(&self) -> Option<SceneError> {
-        let is_idle = self.lighting.is_some() && self.meshes.is_empty();
+        let has_mesh = !self.meshes.is_empty() || self.colliders.iter().any(|it| it.is_seen_mesh());
+        let is_idle = self.lighting.is_some() && !has_mesh;
         is_idle.then(|| {
             let message = "lights meshes, and there is no [[mesh]]: add one, or leave it out";
             SceneError::value("lighting", message)

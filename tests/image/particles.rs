@@ -3,8 +3,8 @@
 use energywave::image::{DepthAlong, DepthImage, ImageSize};
 use energywave::particle::Simulation;
 use energywave::scene::{
-    Absorption, Antialias, Camera, Collider, Decay, EmittedWave, Lattice, LightElement,
-    MetaballKernel, Metaballs, Particles, PointList, SimulationSettings, Sphere,
+    Absorption, Antialias, Camera, Collider, Decay, EmittedWave, Lattice, LightElement, Mesh,
+    MetaballKernel, Metaballs, Particles, PointList, SimulationSettings, Sphere, TriangleList,
 };
 use energywave::{Device, RadianceImage, Renderer, Scene, reference};
 use fastrand::Rng;
@@ -344,6 +344,35 @@ fn waves_are_drawn_as_their_light_and_colliders_hide_it() {
     // Another frame is another picture, and the first comes back to the bit.
     assert!(renderer.render(&splash(40.0)).unwrap().as_slice() != shown.as_slice());
     assert!(renderer.render(&scene).unwrap().as_slice() == shown.as_slice());
+}
+
+#[test]
+fn colliders_of_triangles_are_seen_as_meshes_are() {
+    let corners = [[-5.0, -20.0, -20.0], [-5.0, 20.0, -20.0], [-5.0, 0.0, 25.0]];
+    let corners = corners.map(DVec3::from_array).to_vec();
+    let mut mesh = Mesh::new(TriangleList::new(corners, vec![[0, 1, 2]]).unwrap());
+    mesh.albedo = DVec3::new(0.2, 0.4, 0.6);
+    let mut hit = splash(70.0);
+    let mut collider = Collider::mesh(mesh.clone());
+    collider.color = mesh.albedo;
+    hit.colliders = vec![collider].into();
+    let light = Simulation::new(&hit).unwrap().light(70.0).unwrap();
+    let mut given = splash(70.0);
+    given.waves.clear();
+    given.colliders.clear();
+    given.light_elements = light.into();
+    for mut renderer in [renderer(""), Renderer::new(&Device::reference()).unwrap()] {
+        let shown = renderer.render(&hit).unwrap();
+        let dark = renderer.render(&given).unwrap();
+        given.meshes.push(mesh.clone());
+        assert!(renderer.render(&given).unwrap().as_slice() == shown.as_slice());
+        given.meshes.clear();
+        // Unseen, it hides nothing.
+        assert!(dark.as_slice() != shown.as_slice());
+        hit.colliders[0].visible = false;
+        assert!(renderer.render(&hit).unwrap().as_slice() == dark.as_slice());
+        hit.colliders[0].visible = true;
+    }
 }
 
 #[test]

@@ -234,7 +234,48 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[[collider]]\nmesh = \"ship.obj\"\n",
         "5:8: collider[0].mesh",
-        "meshes are no colliders yet: write box",
+        "expected a table",
+    ),
+    (
+        "[[collider]]\nmesh = { file = \"ship.obj\" }\n",
+        "5:17: collider[0].mesh.file",
+        "ship.obj: cannot read",
+    ),
+    (
+        "[[collider]]\nmesh = { vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], triangles = [[0, 1, 3]] }\n",
+        "5:68: collider[0].mesh.triangles",
+        "triangle 0 names vertex 3",
+    ),
+    (
+        "[[collider]]\nmesh = { vertices = [[0, 0, 0], [1, 0, 0], [0, nan, 0]], triangles = [[0, 1, 2]] }\n",
+        "5:21: collider[0].mesh.vertices",
+        "finite",
+    ),
+    (
+        "[[collider]]\nmesh = { scale = 0, vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], triangles = [[0, 1, 2]] }\n",
+        "5:18: collider[0].mesh.scale",
+        "must be positive",
+    ),
+    (
+        "[[collider]]\nmesh = { }\n",
+        "5:8: collider[0].mesh.vertices",
+        "there are no vertices",
+    ),
+    (
+        "[[collider]]\nmesh = { albedo = [1, 1, 1], vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], triangles = [[0, 1, 2]] }\n",
+        "5:19: collider[0].mesh.albedo",
+        "the colour of a collider is its `color`",
+    ),
+    (
+        "[[collider]]\ncolor = [2, 1, 1]\nmesh = { vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], triangles = [[0, 1, 2]] }\n",
+        "5:9: collider[0].color",
+        "the share of light that it throws back",
+    ),
+    (
+        "[[collider]]\nmesh = { vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], triangles = [[0, 1, 2]] }\n[[wave]]\ndirection = [1, 0, 0]\n\
+         response = \"accelerate\"\n",
+        "8:12: wave[0].response",
+        "close it, or write response",
     ),
     (
         "[[collider]]\nbox = { center = [0, 0, 0] }\n",

@@ -7,6 +7,7 @@ use super::laws::{Laws, Rule};
 use super::step::Scratch;
 use super::*;
 mod edges;
+mod meshes;
 mod patterns;
 mod shapes;
 

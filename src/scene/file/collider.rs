@@ -1,11 +1,11 @@
 //! `[[collider]]` of a scene file: a table that has one of the shapes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::SceneFile;
+use super::{MeshTable, SceneFile};
 use crate::error::SceneError;
 use crate::scene::colors::read_color;
 use crate::scene::simulation::GRAY;
@@ -30,8 +30,8 @@ pub(super) struct ColliderTable {
     sphere: Option<SphereTable>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     plane: Option<PlaneTable>,
-    #[serde(default, skip_serializing)]
-    mesh: Option<PathBuf>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    mesh: Option<MeshTable>,
     #[serde(default = "seen")]
     visible: bool,
     #[serde(default = "gray", deserialize_with = "read_color")]
@@ -40,10 +40,10 @@ pub(super) struct ColliderTable {
 
 // What is read of `[[collider]]`.
 keys! { pub(in crate::scene) COLLIDER_KEYS;
-    box: Table("collider.box"), NONE, Otherwise("sphere or plane"), "a box";
-    sphere: Table("collider.sphere"), NONE, Otherwise("box or plane"), "a ball";
-    plane: Table("collider.plane"), NONE, Otherwise("box or sphere"), "all that lies behind a plane";
-    mesh: File, NONE, Otherwise("none"), "a mesh; not built yet, it is refused";
+    box: Table("collider.box"), NONE, Otherwise("sphere, plane or mesh"), "a box";
+    sphere: Table("collider.sphere"), NONE, Otherwise("box, plane or mesh"), "a ball";
+    plane: Table("collider.plane"), NONE, Otherwise("box, sphere or mesh"), "all that lies behind a plane";
+    mesh: Table("mesh"), NONE, Otherwise("box, sphere or plane"), "triangles, without an albedo";
     visible: Flag, NONE, Value("true"), "whether it is seen";
     color: Color, "linear RGB", Value("[0.25, 0.25, 0.25]"), "the colour, where it is seen";
 }
@@ -100,35 +100,32 @@ keys! { pub(in crate::scene) PLANE_KEYS;
 }
 
 impl ColliderTable {
-    /// Makes the collider.
-    pub(super) fn collider(&self) -> Result<Collider, Fault> {
-        if self.mesh.is_some() {
-            let message = "meshes are no colliders yet: write box = { half = [..] }, sphere = { radius = .. } or \
-                plane = { normal = [..] }";
-            return Err(Fault::new("mesh", message));
-        }
-        let shape = match (&self.r#box, &self.sphere, &self.plane) {
-            (Some(it), None, None) => ColliderShape::Box {
+    /// Makes the collider; a file of its mesh is from `folder`.
+    fn collider(&self, index: usize, folder: &Path) -> Result<Collider, SceneError> {
+        let fault = |message: &str| Fault::new("", message).of(&format!("collider[{index}]"));
+        let shape = match (&self.r#box, &self.sphere, &self.plane, &self.mesh) {
+            (Some(it), None, None, None) => ColliderShape::Box {
                 center: it.center,
                 half: it.half,
                 rotation: it.rotation,
             },
-            (None, Some(it), None) => ColliderShape::Sphere {
+            (None, Some(it), None, None) => ColliderShape::Sphere {
                 center: it.center,
                 radius: it.radius,
             },
-            (None, None, Some(it)) => ColliderShape::Plane {
+            (None, None, Some(it), None) => ColliderShape::Plane {
                 point: it.point,
                 normal: it.normal.unwrap_or(DVec3::Z),
             },
-            (None, None, None) => {
-                let message = "it has no shape: write box = { half = [1.0, 1.0, 1.0] }, sphere = { radius = 1.0 } or \
-                    plane = { normal = [0.0, 0.0, 1.0] }";
-                return Err(Fault::new("", message));
+            (None, None, None, Some(it)) => ColliderShape::Mesh(it.open_collider(index, folder)?),
+            (None, None, None, None) => {
+                let message = "it has no shape: write box = { half = [1.0, 1.0, 1.0] }, sphere = { radius = 1.0 }, \
+                    plane = { normal = [0.0, 0.0, 1.0] } or mesh = { file = \"ship.obj\" }";
+                return Err(fault(message));
             }
             _ => {
                 let message = "it has several shapes, of which a collider has one: write a [[collider]] for each";
-                return Err(Fault::new("", message));
+                return Err(fault(message));
             }
         };
         Ok(Collider {
@@ -148,8 +145,8 @@ impl ColliderTable {
             visible: collider.visible,
             color: collider.color,
         };
-        match collider.shape {
-            ColliderShape::Box {
+        match &collider.shape {
+            &ColliderShape::Box {
                 center,
                 half,
                 rotation,
@@ -160,10 +157,11 @@ impl ColliderTable {
                     rotation,
                 });
             }
-            ColliderShape::Sphere { center, radius } => {
+            &ColliderShape::Sphere { center, radius } => {
                 table.sphere = Some(SphereTable { center, radius });
             }
-            ColliderShape::Plane { point, normal } => {
+            ColliderShape::Mesh(mesh) => table.mesh = Some(MeshTable::of_collider(mesh)),
+            &ColliderShape::Plane { point, normal } => {
                 table.plane = Some(PlaneTable {
                     point,
                     normal: Some(normal),
@@ -174,19 +172,26 @@ impl ColliderTable {
     }
 }
 
-impl SceneFile {
-    /// Returns the colliders that are right.
-    pub(super) fn colliders(&self) -> List<Collider> {
-        let made = self.collider.iter().flat_map(ColliderTable::collider);
-        made.collect()
+impl ColliderTable {
+    /// Returns the files that its mesh is in, which are from `folder`.
+    pub(super) fn files(&self, folder: &Path) -> Vec<PathBuf> {
+        let mesh = self.mesh.as_ref();
+        mesh.map_or(Vec::new(), |mesh| mesh.files(folder))
     }
 
-    pub(super) fn check_colliders(&self) -> std::result::Result<(), SceneError> {
-        for (index, table) in self.collider.iter().enumerate() {
-            table
-                .collider()
-                .map_err(|fault| fault.of(&format!("collider[{index}]")))?;
+    /// Takes the triangles that another table has read, if it names the same.
+    pub(super) fn share(&mut self, other: &Self) {
+        if let (Some(mesh), Some(other)) = (&mut self.mesh, &other.mesh) {
+            mesh.share(other);
         }
-        Ok(())
+    }
+}
+
+impl SceneFile {
+    /// Makes the colliders; files of meshes are from `folder`.
+    pub(super) fn colliders(&self, folder: &Path) -> Result<List<Collider>, SceneError> {
+        let tables = self.collider.iter().enumerate();
+        let made = tables.map(|(index, table)| table.collider(index, folder));
+        made.collect()
     }
 }

@@ -14,7 +14,11 @@ use crate::scene::{Mesh, Rotation, TriangleList};
 
 /// A mesh as a file describes it.
 #[derive(Debug, Clone, Deserialize, Serialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(
+    default,
+    deny_unknown_fields,
+    expecting = "a table, such as { file = \"ship.obj\" }"
+)]
 pub(super) struct MeshTable {
     #[serde(
         skip_serializing_if = "Vec::is_empty",
@@ -35,8 +39,11 @@ pub(super) struct MeshTable {
     rotate: Option<Rotation>,
     #[serde(deserialize_with = "read_vector")]
     translate: DVec3,
-    #[serde(deserialize_with = "read_color")]
-    albedo: DVec3,
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "read_some_color"
+    )]
+    albedo: Option<DVec3>,
     /// Its triangles, once they were read; the tables of all times share them as long as they name the same.
     #[serde(skip)]
     list: Arc<OnceLock<TriangleList>>,
@@ -62,10 +69,14 @@ impl Default for MeshTable {
             scale: 1.0,
             rotate: None,
             translate: DVec3::ZERO,
-            albedo: ALBEDO,
+            albedo: None,
             list: Arc::default(),
         }
     }
+}
+
+fn read_some_color<'de, D: serde::Deserializer<'de>>(reader: D) -> Result<Option<DVec3>, D::Error> {
+    read_color(reader).map(Some)
 }
 
 impl MeshTable {
@@ -93,7 +104,7 @@ impl MeshTable {
             scale: mesh.scale,
             rotate: mesh.rotate,
             translate: mesh.translate,
-            albedo: mesh.albedo,
+            albedo: Some(mesh.albedo),
             list: Arc::default(),
         }
     }
@@ -111,6 +122,13 @@ impl MeshTable {
     /// Makes the mesh; its file is from `folder`.
     pub(super) fn open(&self, index: usize, folder: &Path) -> Result<Mesh, SceneError> {
         let table = format!("mesh[{index}]");
+        let mesh = self.open_at(&table, folder)?;
+        mesh.check().map_err(|fault| fault.of(&table))?;
+        Ok(mesh)
+    }
+
+    /// Makes the mesh of a table of this key, which is not checked yet.
+    fn open_at(&self, table: &str, folder: &Path) -> Result<Mesh, SceneError> {
         let list = match self.list.get() {
             Some(list) => list.clone(),
             None => {
@@ -121,15 +139,31 @@ impl MeshTable {
                 self.list.get_or_init(|| list).clone()
             }
         };
-        let mesh = Mesh {
+        Ok(Mesh {
             triangles: list,
             scale: self.scale,
             rotate: self.rotate,
             translate: self.translate,
-            albedo: self.albedo,
-        };
-        mesh.check().map_err(|fault| fault.of(&table))?;
-        Ok(mesh)
+            albedo: self.albedo.unwrap_or(ALBEDO),
+        })
+    }
+
+    /// Makes that of a collider, whose colour is the collider's.
+    pub(super) fn open_collider(&self, index: usize, folder: &Path) -> Result<Mesh, SceneError> {
+        let table = format!("collider[{index}].mesh");
+        if self.albedo.is_some() {
+            let message = "the colour of a collider is its `color`, beside `mesh`: write it there";
+            return Err(SceneError::value(format!("{table}.albedo"), message));
+        }
+        self.open_at(&table, folder)
+    }
+
+    /// Makes that of a collider as it is written.
+    pub(super) fn of_collider(mesh: &Mesh) -> Self {
+        Self {
+            albedo: None,
+            ..Self::of(mesh)
+        }
     }
 
     fn read(&self, folder: &Path) -> Result<TriangleList, SceneError> {

@@ -130,7 +130,7 @@ macro_rules! define_scene_file {
                     lighting: self.lighting,
                     simulation: self.simulation,
                     waves: std::mem::take(&mut self.wave),
-                    colliders: self.colliders(),
+                    colliders: List::new(),
                     meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
@@ -250,7 +250,7 @@ impl SceneFile {
         self.time = other.time;
         self.simulation = other.simulation;
         self.wave = other.wave;
-        self.collider = other.collider;
+        self.collider = shared(other.collider, &self.collider, ColliderTable::share);
         self.mesh = shared(other.mesh, &self.mesh, MeshTable::share);
         self.metaballs = shared(other.metaballs, &self.metaballs, MetaballsTable::share);
         self.particles = shared(other.particles, &self.particles, ParticlesTable::share);
@@ -281,7 +281,7 @@ impl SceneFile {
             .check()
             .map_err(|fault| fault.of("integration"))?;
         self.time.check().map_err(|fault| fault.of("time"))?;
-        self.check_colliders()?;
+        scene.colliders = self.colliders(folder)?;
         let groups = Groups::add_to(&mut scene, std::mem::take(&mut self.group))?;
         groups.check(&scene)?;
         for (index, table) in self.mesh.iter().enumerate() {

@@ -52,9 +52,10 @@ impl AnimatedScene {
         let named = images.chain(surfaces).chain(lights);
         let named = named.map(|file| motion.folder.join(file));
         let meshes = file.mesh.iter();
-        named
-            .chain(meshes.flat_map(|mesh| mesh.files(&motion.folder)))
-            .collect()
+        let meshes = meshes.flat_map(|mesh| mesh.files(&motion.folder));
+        let hit = file.collider.iter();
+        let hit = hit.flat_map(|collider| collider.files(&motion.folder));
+        named.chain(meshes).chain(hit).collect()
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 #[cfg(feature = "files")]
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
@@ -36,6 +36,8 @@ struct Triangles {
     low: DVec3,
     high: DVec3,
     revision: u64,
+    /// Once somebody asked.
+    is_closed: OnceLock<bool>,
     #[cfg(feature = "files")]
     file: Option<PathBuf>,
 }
@@ -120,6 +122,7 @@ impl TriangleList {
             low,
             high,
             revision: new_revision(),
+            is_closed: OnceLock::new(),
             #[cfg(feature = "files")]
             file: None,
         })))
@@ -164,6 +167,32 @@ impl TriangleList {
         (self.0.low, self.0.high)
     }
 
+    /// Returns whether it has an inside: every edge, by the places of its ends, has as many triangles that go along it
+    /// one way as the other.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        *self.0.is_closed.get_or_init(|| {
+            let place = |corner: u32| (self.0.vertices[corner as usize] + DVec3::ZERO).to_array();
+            let key = |corner: u32| place(corner).map(f64::to_bits);
+            let mut edges = Vec::with_capacity(3 * self.len());
+            for &[a, b, c] in self.triangles() {
+                for (from, to) in [(a, b), (b, c), (c, a)] {
+                    let (from, to) = (key(from), key(to));
+                    edges.push((
+                        from.min(to),
+                        from.max(to),
+                        if from < to { 1_i64 } else { -1 },
+                    ));
+                }
+            }
+            edges.sort_unstable();
+            let ends =
+                |one: &(_, _, i64), other: &(_, _, i64)| (one.0, one.1) == (other.0, other.1);
+            let mut shared = edges.chunk_by(ends);
+            shared.all(|edges| edges.iter().map(|it| it.2).sum::<i64>() == 0)
+        })
+    }
+
     /// Returns a number that no list of other contents has had in this process.
     #[cfg(test)]
     fn revision(&self) -> u64 {
@@ -201,6 +230,7 @@ impl Default for TriangleList {
             low: DVec3::ZERO,
             high: DVec3::ZERO,
             revision: 0,
+            is_closed: OnceLock::new(),
             #[cfg(feature = "files")]
             file: None,
         }))
@@ -231,6 +261,25 @@ mod tests {
         assert_eq!(list.clone().revision(), list.revision());
         assert_eq!(list.bounds(), (DVec3::ZERO, DVec3::new(2.0, 1.0, 0.0)));
         assert!(TriangleList::default().is_empty() && TriangleList::default() != list);
+        // The four faces of a corner of a cube, with a corner of its own for each triangle.
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let apart = faces
+            .as_flattened()
+            .iter()
+            .map(|it| corners[*it])
+            .collect::<Vec<_>>();
+        let faces = |count: u32| {
+            (0..count)
+                .map(|it| [3 * it, 3 * it + 1, 3 * it + 2])
+                .collect()
+        };
+        let is_closed = |count| {
+            TriangleList::new(apart.clone(), faces(count))
+                .unwrap()
+                .is_closed()
+        };
+        assert!(is_closed(4) && !is_closed(3) && !list.is_closed());
     }
 
     #[test]

@@ -7,6 +7,7 @@ mod buffers;
 mod file;
 #[cfg(feature = "files")]
 mod gltf;
+mod halves;
 mod list;
 #[cfg(feature = "files")]
 mod obj;
@@ -15,6 +16,7 @@ use glam::DVec3;
 
 #[cfg(feature = "files")]
 pub(super) use gltf::buffer_files;
+pub(crate) use halves::{Halves, Triangle};
 pub use list::TriangleList;
 
 use super::group::{Placement, Rotation};

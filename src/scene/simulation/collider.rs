@@ -1,9 +1,9 @@
-//! What waves of particles hit: solids whose surface is a formula.
+//! What waves of particles hit: solids whose surface is a formula, and meshes.
 
 use glam::DVec3;
 
-use crate::scene::Rotation;
-use crate::scene::values::{Checked, direction, finite, positive, vector};
+use crate::scene::values::{Checked, Fault, direction, finite, positive, vector};
+use crate::scene::{Mesh, Rotation};
 
 /// A solid that waves of particles hit.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Collider {
 }
 
 /// What a [`Collider`] is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ColliderShape {
     /// A box.
@@ -44,6 +44,9 @@ pub enum ColliderShape {
         /// Where it faces, of any length but zero.
         normal: DVec3,
     },
+    /// Triangles, which are hit from both sides. Where it is seen, the collider's colour takes the place of its albedo,
+    /// 0 to 1.
+    Mesh(Mesh),
 }
 
 impl Collider {
@@ -79,6 +82,27 @@ impl Collider {
         Self::new(ColliderShape::Plane { point, normal })
     }
 
+    /// Makes one of triangles.
+    #[must_use]
+    pub fn mesh(mesh: Mesh) -> Self {
+        Self::new(ColliderShape::Mesh(mesh))
+    }
+
+    /// Returns its mesh, if it is one, as it is seen.
+    pub(crate) fn seen_mesh(&self) -> Option<Mesh> {
+        match &self.shape {
+            ColliderShape::Mesh(mesh) if self.visible => Some(Mesh {
+                albedo: self.color,
+                ..mesh.clone()
+            }),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn is_seen_mesh(&self) -> bool {
+        self.visible && matches!(self.shape, ColliderShape::Mesh(_))
+    }
+
     pub(super) fn check(&self) -> Checked {
         vector("color", self.color)?;
         match &self.shape {
@@ -103,6 +127,15 @@ impl Collider {
             ColliderShape::Plane { point, normal } => {
                 vector("plane.point", *point)?;
                 direction("plane.normal", *normal)
+            }
+            ColliderShape::Mesh(mesh) => {
+                let of_mesh = |fault: Fault| fault.within("mesh");
+                mesh.check().map_err(of_mesh)?;
+                if self.color.min_element() < 0.0 || self.color.max_element() > 1.0 {
+                    let message = "of a mesh it is the share of light that it throws back: 0 to 1";
+                    return Err(Fault::new("color", message));
+                }
+                Ok(())
             }
         }
     }

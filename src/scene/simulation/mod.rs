@@ -91,6 +91,7 @@ impl Scene {
         settings.check().map_err(|fault| fault.of("simulation"))?;
         check_all("wave", &self.waves, EmittedWave::check)?;
         check_all("collider", &self.colliders, Collider::check)?;
+        self.check_insides()?;
         let time = settings.time.unwrap_or(0.0);
         for (index, wave) in self.waves.iter().enumerate() {
             let count = wave.most_rate() * (time + 1.0);
@@ -102,6 +103,28 @@ impl Scene {
             }
         }
         Ok(())
+    }
+}
+
+impl Scene {
+    /// Refuses waves that are pushed out of what has no inside.
+    fn check_insides(&self) -> std::result::Result<(), SceneError> {
+        let is_pushed = |wave: &EmittedWave| wave.response == Response::Accelerate;
+        let is_open = |collider: &Collider| match &collider.shape {
+            ColliderShape::Mesh(mesh) => !mesh.triangles.is_closed(),
+            _ => false,
+        };
+        let Some(wave) = self.waves.iter().position(is_pushed) else {
+            return Ok(());
+        };
+        let Some(collider) = self.colliders.iter().position(is_open) else {
+            return Ok(());
+        };
+        let message = format!(
+            "\"accelerate\" pushes particles out of what they have entered, and the mesh of collider[{collider}] \
+             is open and has no inside: close it, or write response = \"replace\""
+        );
+        Err(Fault::new("response", message).of(&format!("wave[{wave}]")))
     }
 }
 
