@@ -105,7 +105,8 @@ fn with_comments(text: &str, wgsl: &str, language: Language) -> String {
     }
     whole += &head;
     for line in rest.lines() {
-        let is_function = line.ends_with('{') && line.contains('(') && !line.starts_with(' ');
+        let is_function =
+            line.ends_with(['{', ')']) && line.contains('(') && !line.starts_with([' ', '#', '/']);
         if is_function {
             let name = line
                 .split('(')
