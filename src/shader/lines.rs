@@ -33,7 +33,8 @@ exported!(segment::Segment, "segment.wgsl", |it| vec![
     it.to,
     it.direction
 ]);
-exported!(beam::Beam, "beam.wgsl", |it| {
-    let parts = [it.line, it.cap, it.sphere, it.per_taper];
-    vec![it.tip, it.direction, parts]
-});
+exported!(beam::Beam, "beam.wgsl", |it| vec![
+    it.tip,
+    it.direction,
+    it.parts()
+]);
