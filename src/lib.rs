@@ -42,8 +42,8 @@
 //!
 //! Features, all on by default: `files` (EXR and PNG images, TOML scenes), `webp` and `jpeg` (such images), `json`
 //! (JSON scenes and rays), `kernel-cache` (built kernels on disk, for drivers that keep none), `threads` (the reference
-//! and tone mapping on all cores), `papers` (the papers' tables), `cli` (the program, with all of these). Off by
-//! default: `window` (`energywave watch` in a window).
+//! and tone mapping on all cores), `papers` (the papers' tables), `shaders` (shaders in GLSL and HLSL), `cli` (the
+//! program, with all of these). Off by default: `window` (`energywave watch` in a window).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod bloom;
@@ -68,6 +68,7 @@ pub mod particle;
 pub mod reference;
 mod render;
 pub mod scene;
+pub mod shader;
 mod shown;
 mod threads;
 #[cfg(feature = "json")]

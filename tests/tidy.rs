@@ -60,7 +60,7 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 16] = [
+const LAYERS: [(&str, &[&str]); 17] = [
     ("image", &[]),
     ("volume", &["image"]),
     ("opencl", &[]),
@@ -73,6 +73,8 @@ const LAYERS: [(&str, &[&str]); 16] = [
     ("light", &["opencl", "scene", "Device"]),
     ("scene", &["image"]),
     ("particle", &["scene"]),
+    // The block has the values that kernels get.
+    ("shader", &["scene", "wave"]),
     ("reference", &["image", "scene", "volume"]),
     // The self-test compares with the reference.
     ("wave", &["image", "opencl", "scene", "reference", "volume"]),

@@ -40,6 +40,9 @@ pub enum Command {
     /// Sample the light that space gives off on a grid, for programs that draw volumes
     #[command(after_help = examples::BAKE)]
     Bake(BakeArguments),
+    /// Write a scene as a shader: its closed forms and its values, for engines that draw by themselves
+    #[command(after_help = examples::EXPORT)]
+    Export(ExportArguments),
     /// Write a scene to begin with: a preset, with comments that say what to change
     #[command(after_help = examples::NEW)]
     New(NewArguments),

@@ -40,6 +40,12 @@ Examples:
   energywave bake laser.toml -o laser.vdb --cells 256 --box 0,0,0 4,1,1 --half
   energywave bake nova.toml -o nova.raw --mean 4 --time 0.5";
 
+pub const EXPORT: &str = "\
+Examples:
+  energywave export beam.toml --to wgsl -o beam.wgsl
+  energywave export beam.toml --to glsl -o beam.frag --uniforms beam.bin --time 1.5
+  energywave export beam.toml --to hlsl -o beam.hlsl --entry function";
+
 pub const NEW: &str = "\
 Examples:
   energywave new --list

@@ -12,6 +12,7 @@ mod devices;
 mod environment;
 mod error_map;
 mod examples;
+mod export;
 mod figures;
 mod help;
 mod new;
@@ -74,6 +75,7 @@ pub fn run(warnings: &[String]) -> ExitCode {
         Command::Animate(arguments) => animate::run(&arguments),
         Command::Watch(arguments) => watch::run(arguments),
         Command::Bake(arguments) => bake::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Devices(arguments) => devices::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

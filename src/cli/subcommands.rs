@@ -47,6 +47,45 @@ pub struct BakeArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct ExportArguments {
+    /// Scene file, TOML or (.json) JSON; - is standard input
+    pub scene: PathBuf,
+    /// What the shader is written in
+    #[arg(long = "to", value_enum, value_name = "LANGUAGE")]
+    pub language: LanguageName,
+    /// Text to write; - is standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Where the text begins
+    #[arg(long, value_enum, default_value_t = EntryName::Image)]
+    pub entry: EntryName,
+    /// File for the bytes of the uniform block, little-endian float32
+    #[arg(long, value_name = "FILE")]
+    pub uniforms: Option<PathBuf>,
+    /// When it is in a scene that moves, seconds [default: 0]
+    #[arg(long, value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
+    pub time: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum LanguageName {
+    /// WebGPU's
+    Wgsl,
+    /// OpenGL's, version 3.30
+    Glsl,
+    /// Direct3D's
+    Hlsl,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EntryName {
+    /// The function wave_light, to call from a shader of your own
+    Function,
+    /// Also a picture by the scene's camera
+    Image,
+}
+
+#[derive(Debug, Args)]
 pub struct NewArguments {
     /// Name of the preset, one of those that --list shows
     #[arg(required_unless_present = "list")]

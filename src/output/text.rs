@@ -23,7 +23,14 @@ impl TextFile {
     /// # Errors
     /// [`Error::Output`](crate::Error::Output) if it cannot be written; nothing is left behind then.
     pub fn write(self, text: &str) -> Result<()> {
-        self.0
-            .write_with(|writer| writer.write_all(text.as_bytes()))
+        self.write_bytes(text.as_bytes())
+    }
+
+    /// Writes what is no text, and puts the file in its place.
+    ///
+    /// # Errors
+    /// As [`TextFile::write`].
+    pub fn write_bytes(self, bytes: &[u8]) -> Result<()> {
+        self.0.write_with(|writer| writer.write_all(bytes))
     }
 }

@@ -28,6 +28,13 @@ device_struct! {
     }
 }
 
+impl Beam {
+    /// Returns the coefficients of line, cap and sphere, and 1 over the length of the taper, or 0.
+    pub fn parts(&self) -> [f32; 4] {
+        [self.line, self.cap, self.sphere, self.per_taper]
+    }
+}
+
 impl Pack for scene::Beam {
     type Device = Beam;
 

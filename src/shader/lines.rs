@@ -1,0 +1,40 @@
+//! Straight light in a shader's block.
+
+use super::{Exported, Row};
+use crate::wave::pack::layout::Falloff;
+use crate::wave::pack::{beam, cylinder, segment};
+
+macro_rules! exported {
+    ($Type:ty, $file:literal, |$source:ident| $rows:expr) => {
+        impl Exported for $Type {
+            const TEXT: Option<&'static str> = Some(include_str!(concat!("../../wgsl/", $file)));
+
+            fn falloff(&self) -> Falloff {
+                self.falloff
+            }
+
+            fn rows(&self) -> Vec<Row> {
+                let $source = self;
+                $rows
+            }
+
+            fn emission(&self) -> Row {
+                self.emission
+            }
+        }
+    };
+}
+exported!(cylinder::Cylinder, "cylinder.wgsl", |it| vec![
+    it.point,
+    it.direction
+]);
+exported!(segment::Segment, "segment.wgsl", |it| vec![
+    it.from,
+    it.to,
+    it.direction
+]);
+exported!(beam::Beam, "beam.wgsl", |it| vec![
+    it.tip,
+    it.direction,
+    it.parts()
+]);

@@ -1,0 +1,242 @@
+//! Draws exported shaders by OpenGL, beside the reference.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use energywave::image::ImageSize;
+use energywave::scene::{Antialias, Beam, BeamEnd, Cylinder, Decay, Profile, Segment, Sphere};
+use energywave::shader::{Entry, Language, export};
+use energywave::{RadianceImage, Scene, reference};
+use glam::DVec3;
+
+use crate::common::empty_scene;
+use crate::common::program::{Folder, expect};
+
+/// What float32 without further digits, and a driver's own logarithms, are off by: of the pixel's brightest channel.
+const MOST_OFF: f64 = 1e-4;
+
+/// The same for 1/d^2 of a core without thickness: beside it, float32 places lose digits that kernels carry along.
+const MOST_OFF_BESIDE_BARE_CORES: f64 = 5e-4;
+
+/// Small pictures: the reference takes its time.
+const SIDE: u32 = 48;
+
+/// Draws a text by OpenGL; `None` where there is no OpenGL.
+fn drawn(folder: &Path, text: &str, uniforms: &[u8]) -> Option<Vec<f32>> {
+    let files = ["shader.frag", "uniforms.bin", "image.raw"].map(|name| folder.join(name));
+    fs::write(&files[0], text).unwrap();
+    fs::write(&files[1], uniforms).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/draw_shader.py");
+    let mut command = Command::new("/usr/bin/python3");
+    let side = SIDE.to_string();
+    let output = command
+        .arg(script)
+        .args(&files)
+        .args([&side, &side])
+        .output()
+        .ok()?;
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    if !said.contains("drawn: ") {
+        println!("{said}{}", String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success(), "OpenGL refuses the text");
+        assert!(
+            std::env::var_os("REQUIRE_SHADER_DRAWING").is_none(),
+            "no OpenGL"
+        );
+        return None;
+    }
+    let bytes = fs::read(&files[2]).unwrap();
+    Some(
+        bytes
+            .chunks_exact(4)
+            .map(|it| f32::from_le_bytes(it.try_into().unwrap()))
+            .collect(),
+    )
+}
+
+/// Returns the greatest error of a picture, relative to the brightest channel of each pixel.
+fn error(found: &[f32], expected: &RadianceImage) -> f64 {
+    let at = |index: u32| expected.pixel(index % SIDE, index / SIDE).unwrap();
+    let all = (0..SIDE * SIDE).map(at);
+    let pixels = found.chunks_exact(3).zip(all);
+    let errors = pixels.map(|(found, expected)| {
+        let channels = found.iter().zip(expected);
+        let off = channels
+            .map(|(a, b)| f64::from((a - b).abs()))
+            .fold(0.0, f64::max);
+        let most = expected[..3]
+            .iter()
+            .fold(0.0_f32, |most, it| most.max(it.abs()));
+        if off.is_nan() {
+            f64::INFINITY
+        } else {
+            off / f64::from(most).max(1e-30)
+        }
+    });
+    errors.fold(0.0, f64::max)
+}
+
+/// The papers' figures that have closed forms, and what they lack.
+fn scenes() -> Vec<(String, Scene)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let figures = [
+        "2006-figure-5-1",
+        "2006-figure-5-3-20",
+        "2006-figure-5-3-40",
+        "2006-figure-5-3-60",
+        "2010-figure-08",
+        "2010-figure-09",
+        "2010-figure-10",
+        "2010-figure-11",
+        "2010-figure-12",
+        "2010-figure-13",
+        "2010-figure-14",
+    ];
+    let of_file = |name: &&str| {
+        let path: PathBuf = root.join(format!("{name}.toml"));
+        ((*name).to_owned(), Scene::from_file(path).unwrap())
+    };
+    let mut scenes: Vec<_> = figures.iter().map(of_file).collect();
+    for profile in [Profile::Inverse, Profile::InverseSquare] {
+        for (decay, radius) in [(None, 0.0), (None, 0.05), (Some(Decay::new(0.1, 0.1)), 0.1)] {
+            let mut scene = empty_scene(SIDE, SIDE);
+            scene.decay = decay;
+            let (from, to) = (DVec3::new(-0.9, 0.3, 0.2), DVec3::new(0.4, -0.5, 0.7));
+            scene.segments.push(Segment {
+                radius,
+                profile,
+                ..Segment::new(from, to)
+            });
+            scene.spheres.push(Sphere {
+                center: to,
+                radius,
+                profile,
+                ..Sphere::default()
+            });
+            let cylinder = Cylinder::new(DVec3::new(1.0, 0.2, 0.9));
+            scene.cylinders.push(Cylinder {
+                radius,
+                profile,
+                ..cylinder
+            });
+            scenes.push((format!("{profile:?} {decay:?} {radius}"), scene));
+            let mut scene = empty_scene(SIDE, SIDE);
+            scene.decay = decay;
+            for end in [BeamEnd::Cap(Some(0.4)), BeamEnd::Taper(0.7)] {
+                let beam = Beam::new(DVec3::new(-1.0, 0.2, 0.6));
+                scene.beams.push(Beam {
+                    tip: from,
+                    end,
+                    radius,
+                    profile,
+                    sphere_coefficient: 0.3,
+                    ..beam
+                });
+            }
+            scenes.push((format!("beams {profile:?} {decay:?} {radius}"), scene));
+        }
+    }
+    for (_, scene) in &mut scenes {
+        scene.image = ImageSize {
+            width: SIDE,
+            height: SIDE,
+        };
+        scene.integration.antialias = Antialias::None;
+    }
+    scenes
+}
+
+#[test]
+fn opengl_draws_an_exported_scene_as_the_reference_does() {
+    let folder = Folder::new();
+    let scenes = scenes();
+    assert!(scenes.len() >= 20);
+    for (name, scene) in scenes {
+        let shader = export(&scene, Language::Glsl, Entry::Image).unwrap();
+        let uniforms = shader.uniforms(&scene).unwrap();
+        let Some(found) = drawn(folder.path(), &shader.text, &uniforms) else {
+            return println!("skipped: no OpenGL");
+        };
+        let expected = reference::render(&scene).unwrap();
+        let off = error(&found, &expected);
+        let most = match name.ends_with("InverseSquare None 0") {
+            true => MOST_OFF_BESIDE_BARE_CORES,
+            false => MOST_OFF,
+        };
+        println!("{name}: {off:.1e}");
+        assert!(off <= most, "{name}: {off:e}");
+        // A spoiled text must fail.
+        let spoiled = shader
+            .text
+            .replace("atan(", "1.01 * atan(")
+            .replace("0.5 * log(", "0.505 * log(");
+        assert_ne!(spoiled, shader.text);
+        let found = drawn(folder.path(), &spoiled, &uniforms).unwrap();
+        let off = error(&found, &expected);
+        assert!(off > most, "{name}: a spoiled text passes: {off:e}");
+    }
+}
+
+#[test]
+fn every_language_has_every_scene_with_comments_and_short() {
+    for (name, scene) in scenes() {
+        for language in [Language::Wgsl, Language::Glsl, Language::Hlsl] {
+            for entry in [Entry::Function, Entry::Image] {
+                // What is translated is validated before.
+                let text = export(&scene, language, entry).unwrap().text;
+                assert!(text.contains("wave_light("), "{name}");
+                assert!(text.contains("// Returns the light along a ray"), "{name}");
+                assert!(text.contains("MIT OR Apache-2.0"), "{name}");
+                let has_stage = text.contains("void main") || text.contains(" image(");
+                assert_eq!(has_stage, entry == Entry::Image, "{name} {language:?}");
+                let is_short = language != Language::Wgsl || text.lines().count() < 300;
+                assert!(is_short, "{name}: {} lines", text.lines().count());
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_no_closed_form_is_refused_and_nothing_is_written() {
+    let folder = Folder::new();
+    let head = "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n";
+    let cases = [
+        ("", "no source that glows"),
+        ("[[torus]]\nmajor_radius = 1\n", "[[torus]]"),
+        ("[[path]]\npoints = [[0, 0, 0], [1, 0, 0]]\n", "[[path]]"),
+        ("[[sphere]]\nreach = 1\n", "reach has no closed form"),
+        (
+            "[[sphere]]\nprofile = \"inverse-cube\"\n",
+            "a profile beside",
+        ),
+        ("[absorption]\nkappa = 1\n[[sphere]]\n", "[absorption]"),
+        (
+            "[decay]\nalpha = 1\nbeta = 1\npower = 3\n[[sphere]]\n",
+            "another power",
+        ),
+    ];
+    for (scene, words) in cases {
+        fs::write(folder.path().join("scene.toml"), format!("{head}{scene}")).unwrap();
+        let output = folder.run(&["-q", "export", "scene.toml", "--to", "wgsl", "-o", "x.wgsl"]);
+        expect(&output, 2, words);
+        assert!(!folder.path().join("x.wgsl").exists());
+    }
+    let output = folder.run(&["-q", "export", "scene.toml", "--to", "metal", "-o", "x"]);
+    expect(&output, 2, "wgsl, glsl, hlsl");
+    fs::write(
+        folder.path().join("scene.toml"),
+        format!("{head}[[sphere]]\n"),
+    )
+    .unwrap();
+    let output = folder.run(&[
+        "-q",
+        "export",
+        "scene.toml",
+        "--to",
+        "wgsl",
+        "-o",
+        "none/x.wgsl",
+    ]);
+    expect(&output, 7, "none");
+}
