@@ -69,6 +69,7 @@ pub mod reference;
 mod render;
 pub mod scene;
 mod shown;
+mod texture;
 mod threads;
 #[cfg(feature = "json")]
 pub mod verify;

@@ -60,7 +60,7 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 16] = [
+const LAYERS: [(&str, &[&str]); 17] = [
     ("image", &[]),
     ("volume", &["image"]),
     ("opencl", &[]),
@@ -71,7 +71,8 @@ const LAYERS: [(&str, &[&str]); 16] = [
     ("metaball", &["image", "opencl", "scene"]),
     // One function is the renderer's, on the best device.
     ("light", &["opencl", "scene", "Device"]),
-    ("scene", &["image"]),
+    ("scene", &["image", "volume"]),
+    ("texture", &["image", "opencl", "scene"]),
     ("particle", &["scene"]),
     ("reference", &["image", "scene", "volume"]),
     // The self-test compares with the reference.
@@ -84,6 +85,7 @@ const LAYERS: [(&str, &[&str]); 16] = [
             "bloom",
             "glow",
             "light",
+            "texture",
             "mesh",
             "metaball",
             "particle",

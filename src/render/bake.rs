@@ -46,6 +46,9 @@ impl Scene {
         if self.has_particles() || !self.waves.is_empty() {
             return refuse("particles are not baked: bake the scene without them");
         }
+        if !self.volumes.is_empty() {
+            return refuse("volumes are not baked: bake the scene without them");
+        }
         if let CellValue::Mean(parts) = value
             && !(1..=MOST_PARTS).contains(&parts)
         {

@@ -242,6 +242,11 @@ impl Texture {
 /// Refuses numbers of cells that no texture has.
 pub(crate) fn check_cells(cells: [u32; 3]) -> std::result::Result<(), String> {
     let [x, y, z] = cells;
+    // Kernels count the cells of all channels in 32 bits.
+    let all: u64 = cells.map(u64::from).iter().product();
+    if all > u64::from(u32::MAX) / 3 {
+        return Err(format!("{x}x{y}x{z} cells are more than devices count"));
+    }
     match cells.iter().all(|it| (1..=MOST_TEXELS).contains(it)) {
         true => Ok(()),
         false => Err(format!(

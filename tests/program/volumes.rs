@@ -84,7 +84,12 @@ fn damaged_and_foreign_files_are_refused() {
     let header = "NRRD0004\ntype: float\nencoding: raw\nendian: little\n";
     let nrrd = |rest: &str| format!("{header}{rest}\n\n").into_bytes();
     refused("a.nrrd", &nrrd("sizes: 0 1 1"), "1 to 4096");
-    refused("b.nrrd", &nrrd("sizes: 4096 4096 4096"), "cut short");
+    refused(
+        "b.nrrd",
+        &nrrd("sizes: 4096 4096 4096"),
+        "more than devices count",
+    );
+    refused("f.nrrd", &nrrd("sizes: 1024 1024 1024"), "cut short");
     refused("c.nrrd", &nrrd("sizes: 9999999999 1 1"), "`sizes`");
     let mut cells = nrrd("sizes: 2 1 1");
     cells.extend([1.0, f32::NAN].into_iter().flat_map(f32::to_le_bytes));

@@ -24,6 +24,7 @@ mod time;
 mod toml;
 mod tracks;
 mod tree;
+mod volume;
 mod words;
 mod write;
 
@@ -60,6 +61,8 @@ use scan::UNIT_COUNT;
 pub use span::SceneSpan;
 pub(super) use time::TIME_KEYS;
 use time::TimeTable;
+use volume::VolumeTable;
+pub(super) use volume::{LIGHT_BALL_KEYS, VOLUME_KEYS};
 
 /// Changes a scene between its reading and its check.
 type Adjust<'a> = &'a mut dyn FnMut(&mut Scene, &MethodKeys) -> Result<()>;
@@ -102,6 +105,8 @@ macro_rules! define_scene_file {
             metaballs: Vec<MetaballsTable>,
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             particles: Vec<ParticlesTable>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            volume: Vec<VolumeTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
             #[serde(default, skip_serializing)]
             group: Vec<GroupTable>,
@@ -134,6 +139,7 @@ macro_rules! define_scene_file {
                     meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
+                    volumes: List::new(),
                     light_elements: List::new(),
                     $($list: std::mem::take(&mut self.$kind),)*
                 }
@@ -187,6 +193,7 @@ macro_rules! define_scene_file {
                 display: DisplayTable,
                 metaballs: Vec<MetaballsTable>,
                 particles: Vec<ParticlesTable>,
+                volume: Vec<VolumeTable>,
             ) -> Self {
                 Self {
                     camera: scene.camera.clone(),
@@ -204,6 +211,7 @@ macro_rules! define_scene_file {
                     mesh: scene.meshes.iter().map(MeshTable::of).collect(),
                     metaballs,
                     particles,
+                    volume,
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
                 }
@@ -254,11 +262,15 @@ impl SceneFile {
         self.mesh = shared(other.mesh, &self.mesh, MeshTable::share);
         self.metaballs = shared(other.metaballs, &self.metaballs, MetaballsTable::share);
         self.particles = shared(other.particles, &self.particles, ParticlesTable::share);
+        self.volume = shared(other.volume, &self.volume, VolumeTable::share);
     }
 
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
     fn exposure_of_brightest(mut self) -> Option<f64> {
         if !self.mesh.is_empty() || !self.metaballs.is_empty() || !self.particles.is_empty() {
+            return None;
+        }
+        if !self.volume.is_empty() {
             return None;
         }
         let mut scene = self.scene();
@@ -292,6 +304,9 @@ impl SceneFile {
         }
         for (index, table) in self.particles.iter().enumerate() {
             scene.particles.push(table.open(index, folder)?);
+        }
+        for (index, table) in self.volume.iter().enumerate() {
+            scene.volumes.push(table.open(index, folder)?);
         }
         self.display.fit_exposure(&mut scene);
         adjust(&mut scene, &self.integration.keys())?;
