@@ -234,6 +234,7 @@ fn every_file_of_cl_is_embedded_once() {
         "src/wave/kinds.rs",
         "src/bloom/sources.rs",
         "src/glow/sources.rs",
+        "src/texture/sources.rs",
         "src/light/sources.rs",
         "src/mesh/sources.rs",
         "src/metaball/sources.rs",

@@ -1,13 +1,11 @@
 //! The kernel that draws volumes, as it is built for a film's format.
 
 use super::pack::STRUCTS;
+use super::sources::sources;
 use crate::error::Result;
 use crate::opencl::{
-    Compute, DeviceStruct, FilmFormat, FilmPart, Kernel, Program, RendererOptions, SHARED,
-    SourceFile, Sources, embed,
+    Compute, DeviceStruct, FilmFormat, FilmPart, Kernel, Program, RendererOptions,
 };
-
-const FILES: &[SourceFile<'static>] = embed!("texture/texture.cl", "texture/types.h");
 
 /// Builds it.
 ///
@@ -18,13 +16,9 @@ pub(super) fn build(
     format: FilmFormat,
     options: &RendererOptions,
 ) -> Result<Kernel> {
-    let sources = Sources {
-        files: SHARED.iter().chain(FILES).copied().collect(),
-        kinds: Vec::new(),
-    };
     let sizes = STRUCTS.iter().chain([&FilmPart::LAYOUT]);
     let sizes = sizes.map(|it| format!(" -D SIZEOF_{}={}", it.name.to_uppercase(), it.size));
     let definitions = sizes.collect::<String>() + format.definitions();
-    let text = sources.resolve("texture/texture.cl");
+    let text = sources().resolve("texture/texture.cl");
     Program::build(compute, text, &definitions, options)?.kernel("draw_texture")
 }

@@ -2,6 +2,7 @@
 
 mod kernels;
 pub mod pack;
+mod sources;
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;

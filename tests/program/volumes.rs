@@ -149,3 +149,84 @@ fn light_balls_have_the_shells_of_the_thesis() {
     };
     assert!(Texture::light_ball(&wrong).is_err());
 }
+
+#[test]
+fn reciprocals_are_stored_and_drawn_as_the_light_that_they_are_of() {
+    let folder = Folder::new();
+    let ball = "[[sphere]]\nradius = 0.2\nprofile = \"inverse\"\n";
+    fs::write(folder.path().join("ball.toml"), format!("{CAMERA}{ball}")).unwrap();
+    let bake = [
+        "-q",
+        "bake",
+        "ball.toml",
+        "--cells",
+        "8",
+        "--box",
+        "0,0,0",
+        "2,2,2",
+        "-o",
+    ];
+    expect(&folder.run(&[&bake[..], &["light.nrrd"]].concat()), 0, "");
+    for name in ["squares.nrrd", "squares.vti", "squares.raw"] {
+        expect(
+            &folder.run(&[&bake[..], &[name, "--store", "reciprocal"]].concat()),
+            0,
+            "",
+        );
+        let light = Texture::open(folder.path().join("light.nrrd")).unwrap();
+        let squares = Texture::open(folder.path().join(name)).unwrap();
+        assert_eq!(squares.storage(), Storage::Reciprocal { power: 2 });
+        for (light, square) in light.values().iter().zip(squares.values().iter()) {
+            assert!(
+                (light * light * square - 1.0).abs() < 1e-5,
+                "{light} {square}"
+            );
+        }
+    }
+    let refused = folder.run(&[&bake[..], &["x.vdb", "--store", "reciprocal"]].concat());
+    expect(&refused, 2, "reciprocals are of .nrrd");
+}
+
+#[test]
+fn volumes_that_cannot_be_are_refused_with_their_place() {
+    let folder = Folder::new();
+    let cases = [
+        ("[[volume]]\n", "volume[0].file"),
+        (
+            "[[volume]]\nlight_ball = {}\nsize = [1, 0, 1]\n",
+            "edges above 0",
+        ),
+        ("[[volume]]\nlight_ball = { cells = 0 }\n", "1 to 512"),
+        (
+            "[[volume]]\nlight_ball = { radii = [3, 2, 7] }\n",
+            "volume[0].light_ball.radii",
+        ),
+        ("[[volume]]\nfile = \"none.nrrd\"\n", "none.nrrd"),
+        ("[[volume]]\nslices = \"none/*.png\"\n", "cannot read"),
+        (
+            "[[volume]]\nlight_ball = {}\ncoefficient = -1\n",
+            "0 or more",
+        ),
+        (
+            "[integration]\nslices = 0\n[[volume]]\nlight_ball = {}\n",
+            "1 to 65536 slices",
+        ),
+    ];
+    for (text, reason) in cases {
+        fs::write(folder.path().join("wrong.toml"), format!("{CAMERA}{text}")).unwrap();
+        let output = folder.run(&["render", "wrong.toml", "-o", "x.png"]);
+        expect(&output, 3, reason);
+    }
+    fs::write(
+        folder.path().join("good.toml"),
+        format!("{CAMERA}[[volume]]\nlight_ball = {{}}\n"),
+    )
+    .unwrap();
+    expect(
+        &folder.run(&["render", "good.toml", "-o", "x.png", "--size", "16x16"]),
+        0,
+        "",
+    );
+    let scene = Scene::from_file(folder.path().join("good.toml")).unwrap();
+    assert_eq!(Scene::from_toml(&scene.to_toml().unwrap()).unwrap(), scene);
+}

@@ -20,6 +20,7 @@ mod piped;
 mod points;
 mod scan;
 mod span;
+mod text;
 mod time;
 mod toml;
 mod tracks;
@@ -59,6 +60,7 @@ use particles::ParticlesTable;
 pub(super) use points::LATTICE_KEYS;
 use scan::UNIT_COUNT;
 pub use span::SceneSpan;
+use text::text_of;
 pub(super) use time::TIME_KEYS;
 use time::TimeTable;
 use volume::VolumeTable;
@@ -402,20 +404,6 @@ fn open(path: &Path) -> Result<Document<'static>> {
     let text = text_of(path, bytes)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     Document::read(is_json(path), text, Some(path), folder)
-}
-
-fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String> {
-    let fail = |reason: String| Error::input(path, reason);
-    let no_text = match String::from_utf8(bytes) {
-        Ok(text) => match text.find('\0') {
-            None => return Ok(text),
-            Some(at) => at,
-        },
-        Err(error) => error.utf8_error().valid_up_to(),
-    };
-    Err(fail(format!(
-        "not a text file (byte {no_text}); a scene is TOML or JSON in UTF-8"
-    )))
 }
 
 fn empty_file() -> SceneError {
