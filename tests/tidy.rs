@@ -66,13 +66,16 @@ const LAYERS: [(&str, &[&str]); 17] = [
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
     ("glow", &["image", "opencl", "scene"]),
-    // The self-test of light compares with the reference.
+    // The self-tests of light and of volumes compare with the reference.
     ("mesh", &["image", "opencl", "scene", "light", "reference"]),
     ("metaball", &["image", "opencl", "scene"]),
     // One function is the renderer's, on the best device.
     ("light", &["opencl", "scene", "Device"]),
     ("scene", &["image", "volume"]),
-    ("texture", &["image", "opencl", "scene"]),
+    (
+        "texture",
+        &["image", "opencl", "scene", "volume", "reference"],
+    ),
     ("particle", &["scene"]),
     ("reference", &["image", "scene", "volume"]),
     // The self-test compares with the reference.
@@ -115,6 +118,7 @@ const LAYERS: [(&str, &[&str]); 17] = [
             "glow",
             "light",
             "mesh",
+            "texture",
             "metaball",
             "scene",
             "reference",

@@ -7,6 +7,11 @@
 // Places of a piece of a ray at which the quadratic through three reciprocals is summed.
 #define PLACES 16
 
+// Where the middle of a piece is.
+#ifndef MIDDLE
+#define MIDDLE 0.5f
+#endif
+
 // The cells of a channel, and a place among them: 0 is the middle of the first.
 typedef struct {
     const TextureVolume *volume;
@@ -192,7 +197,7 @@ __kernel void draw_texture(const FilmPart part, const TextureView view, const Te
     for (uint i = 0; i < most; ++i) {
         // From far to near, as slices are blended.
         const floatv number = splat((float)(most - 1u - i));
-        const floatv middle = fma(number + 0.5f, course.step, course.begin);
+        const floatv middle = fma(number + MIDDLE, course.step, course.begin);
         const intv is_outside = (number >= count) | (middle < course.low) | (middle > course.high);
         const floatv left = select(course.step * left_after(&view, middle), splat(0.0f), is_outside);
         if (!any_lane(left != 0.0f))

@@ -15,10 +15,25 @@ pub(super) fn build(
     compute: &Compute,
     format: FilmFormat,
     options: &RendererOptions,
-) -> Result<Kernel> {
+) -> Result<(Kernel, Program)> {
+    let text = sources().resolve("texture/texture.cl");
+    let program = Program::build(compute, text, &definitions(format), options)?;
+    Ok((program.kernel("draw_texture")?, program))
+}
+
+fn definitions(format: FilmFormat) -> String {
     let sizes = STRUCTS.iter().chain([&FilmPart::LAYOUT]);
     let sizes = sizes.map(|it| format!(" -D SIZEOF_{}={}", it.name.to_uppercase(), it.size));
-    let definitions = sizes.collect::<String>() + format.definitions();
-    let text = sources().resolve("texture/texture.cl");
-    Program::build(compute, text, &definitions, options)?.kernel("draw_texture")
+    sizes.collect::<String>() + format.definitions()
+}
+
+/// Builds a text that includes files of `cl/texture/`, for tests; `name` stands for it in the compiler's log.
+pub(crate) fn build_text(
+    compute: &Compute,
+    name: &str,
+    text: &str,
+    options: &RendererOptions,
+) -> Result<Program> {
+    let text = sources().resolve_text(name, text);
+    Program::build(compute, text, &definitions(FilmFormat::Floats), options)
 }

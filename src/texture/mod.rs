@@ -2,6 +2,7 @@
 
 mod kernels;
 pub mod pack;
+mod self_test;
 mod sources;
 
 use std::collections::HashMap;
@@ -18,6 +19,7 @@ use crate::opencl::{
     UploadedShared, run_time,
 };
 use crate::scene::Scene;
+pub(crate) use kernels::build_text;
 use pack::{TextureView, TextureVolume};
 
 /// Work-items in a group, which share nothing.
@@ -83,7 +85,7 @@ impl Textures {
     ///
     /// # Errors
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
-    /// [`Error::Device`](crate::Error::Device).
+    /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device).
     pub(crate) fn plan(
         &mut self,
         compute: &Compute,
@@ -96,8 +98,20 @@ impl Textures {
             return Ok(None);
         }
         if let Entry::Vacant(entry) = self.kernels.entry(format) {
-            entry.insert(kernels::build(compute, format, &self.options)?);
+            let (kernel, program) = kernels::build(compute, format, &self.options)?;
+            let built = (kernel, &program);
+            entry.insert(self_test::self_test(compute, format, &self.options, built)?);
         }
+        self.prepare(compute, scene, there, format).map(Some)
+    }
+
+    fn prepare(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        there: Option<(RawMemory, DepthAlong)>,
+        format: FilmFormat,
+    ) -> Result<TexturePlan> {
         let make = || UploadedShared::new("the cells of a volume");
         self.values.resize_with(scene.volumes.len(), make);
         for (values, volume) in self.values.iter_mut().zip(scene.volumes.iter()) {
@@ -110,14 +124,14 @@ impl Textures {
         let plane = scene.view_plane();
         let method = scene.integration.volumes;
         let volumes = scene.volumes.iter();
-        Ok(Some(TexturePlan {
+        Ok(TexturePlan {
             view: TextureView::new(scene, &plane, along),
             volumes: volumes
                 .map(|volume| TextureVolume::new(volume, &plane, method))
                 .collect(),
             format,
             depths: there.map(|(memory, _)| memory),
-        }))
+        })
     }
 
     /// Enqueues what draws pixels into a film, a volume after the other. Nothing here waits.

@@ -5,7 +5,7 @@ use energywave::glam::DVec3;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, RadianceImage};
 use energywave::scene::{Camera, Decay, Volume, VolumeInterpolation, VolumeMethod};
 use energywave::volume::{Storage, Texture};
-use energywave::{Device, Renderer, Scene};
+use energywave::{Device, ErrorKind, Renderer, RendererOptions, Scene};
 
 use crate::common;
 
@@ -124,6 +124,18 @@ fn slices_approach_the_integral_as_they_grow_more() {
     assert!(
         errors[0] > 10.0 * ERROR_OF_SLICES,
         "few slices pass, too: {errors:?}"
+    );
+}
+
+#[test]
+fn a_kernel_that_sums_beside_the_middles_is_found_out() {
+    let spoiled = common::compiled_with(&RendererOptions::default(), "-D MIDDLE=0.9f");
+    let mut renderer = Renderer::with_options(&common::device(), &spoiled).unwrap();
+    let error = renderer.render(&scene(Storage::Emission)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::SelfTest, "{error}");
+    assert!(
+        error.to_string().contains("the light of a volume"),
+        "{error}"
     );
 }
 
