@@ -22,6 +22,7 @@ pub use crate::reference::{
     mesh_rays, simpson, sources, surface_rays,
 };
 pub use crate::scene::ViewPlane;
+pub use crate::texture::pack::STRUCTS as TEXTURE_STRUCTS;
 pub use crate::wave::{Rule, Split, TILE_SHARES, Wave, pack};
 
 use crate::bloom;
@@ -33,6 +34,7 @@ use crate::opencl::{RendererOptions, run_time};
 use crate::render::Renderer;
 use crate::scene::Scene;
 use crate::scene::kinds::KIND_COUNT;
+use crate::texture;
 use crate::wave;
 
 /// The names of all kinds of source, in the order of the table.
@@ -235,6 +237,19 @@ pub fn build_glow_text(
     options: &RendererOptions,
 ) -> Result<Program> {
     glow::build_text(compute, name, text, options)
+}
+
+/// Builds a text that may include files of `cl/texture/`, as [`build_text`] does with those of the wave.
+///
+/// # Errors
+/// As there.
+pub fn build_texture_text(
+    compute: &Compute,
+    name: &str,
+    text: &str,
+    options: &RendererOptions,
+) -> Result<Program> {
+    texture::build_text(compute, name, text, options)
 }
 
 /// Runs a kernel over `items` work-items, in groups of `group`, waits for it, and returns how long the device worked.

@@ -70,6 +70,7 @@ mod render;
 pub mod scene;
 pub mod shader;
 mod shown;
+mod texture;
 mod threads;
 #[cfg(feature = "json")]
 pub mod verify;

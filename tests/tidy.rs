@@ -66,12 +66,16 @@ const LAYERS: [(&str, &[&str]); 17] = [
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
     ("glow", &["image", "opencl", "scene"]),
-    // The self-test of light compares with the reference.
+    // The self-tests of light and of volumes compare with the reference.
     ("mesh", &["image", "opencl", "scene", "light", "reference"]),
     ("metaball", &["image", "opencl", "scene"]),
     // One function is the renderer's, on the best device.
     ("light", &["opencl", "scene", "Device"]),
-    ("scene", &["image"]),
+    ("scene", &["image", "volume"]),
+    (
+        "texture",
+        &["image", "opencl", "scene", "volume", "reference"],
+    ),
     ("particle", &["scene"]),
     // The block has the values that kernels get.
     ("shader", &["scene", "wave"]),
@@ -86,6 +90,7 @@ const LAYERS: [(&str, &[&str]); 17] = [
             "bloom",
             "glow",
             "light",
+            "texture",
             "mesh",
             "metaball",
             "particle",
@@ -115,6 +120,7 @@ const LAYERS: [(&str, &[&str]); 17] = [
             "glow",
             "light",
             "mesh",
+            "texture",
             "metaball",
             "scene",
             "reference",
@@ -234,6 +240,7 @@ fn every_file_of_cl_is_embedded_once() {
         "src/wave/kinds.rs",
         "src/bloom/sources.rs",
         "src/glow/sources.rs",
+        "src/texture/sources.rs",
         "src/light/sources.rs",
         "src/mesh/sources.rs",
         "src/metaball/sources.rs",

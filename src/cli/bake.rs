@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use energywave::glam::DVec3;
-use energywave::volume::{CellValue, Grid, Volume, VolumeFile};
+use energywave::volume::{CellValue, Grid, Storage, Volume, VolumeFile};
 use energywave::{Error, Renderer, Scene};
 
 use super::animate::Names;
 use super::progress::{Progress, catch_interrupts, was_interrupted};
-use super::subcommands::BakeArguments;
+use super::subcommands::{BakeArguments, Store};
 use super::{Failure, Outcome, choose_devices, names, note, open_scene, shown, warn};
 
 pub fn run(arguments: &BakeArguments) -> Outcome {
@@ -20,7 +20,12 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
         // What it warns of is about pictures.
         let (scene, _) = moving.at_with_warnings(time, |_, _| Ok(()))?;
         let grid = grid(arguments, &scene)?;
-        files.push((scene, grid, VolumeFile::create(&path, arguments.half)?));
+        let storage = match arguments.store {
+            Store::Emission => Storage::Emission,
+            Store::Reciprocal => scene.reciprocal(),
+        };
+        let file = VolumeFile::create(&path, arguments.half)?.storing(storage)?;
+        files.push((scene, grid, file));
     }
     catch_interrupts();
     let devices = choose_devices(arguments.device.device.as_deref())?;

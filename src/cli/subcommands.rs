@@ -44,6 +44,11 @@ pub struct BakeArguments {
     pub fps: f64,
     #[command(flatten)]
     pub device: DeviceArgument,
+
+    /// What cells store: light, or for volumes of scenes its reciprocal, with which cubic interpolation is exact
+    /// near cores
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
+    pub store: Store,
 }
 
 #[derive(Debug, Args)]
@@ -226,4 +231,14 @@ pub struct HelpArguments {
     /// A subcommand; or scene, for the keys of scene files, and one of their tables
     #[arg(value_name = "TOPIC", num_args = 0..=2)]
     pub topic: Vec<String>,
+}
+
+/// What cells store.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Store {
+    /// Light that a world unit of length gives off
+    #[default]
+    Emission,
+    /// 1 over its square, or over itself where all light falls off with the square of the distance
+    Reciprocal,
 }

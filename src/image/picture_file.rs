@@ -35,3 +35,13 @@ pub(super) fn open(path: &Path) -> Result<RadianceImage> {
     }
     Ok(image)
 }
+
+impl RadianceImage {
+    /// Reads a PNG as linear RGB over black.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if the file cannot be read or is no PNG, [`Error::OutOfMemory`].
+    pub(crate) fn open_picture(path: &Path) -> Result<Self> {
+        open(path)
+    }
+}

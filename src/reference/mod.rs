@@ -11,6 +11,7 @@ mod mesh;
 mod particles;
 mod quadrature;
 mod surface;
+mod volumes;
 
 use std::ops::{ControlFlow, Range};
 use std::slice;
@@ -31,6 +32,7 @@ pub(crate) use surface::see_surfaces;
 pub use surface::{SurfaceRay, surface_rays};
 
 use particles::Particles;
+use volumes::Volumes;
 
 use crate::error::{Error, Result};
 use crate::image::RadianceImage;
@@ -284,6 +286,7 @@ pub(crate) fn render_rows(
 pub(crate) struct Tracer {
     sources: Vec<Source>,
     particles: Particles,
+    volumes: Volumes,
     integrand: Integrand,
     method: Method,
     integration: Integration,
@@ -299,6 +302,7 @@ impl Tracer {
         Self {
             sources: sources(scene),
             particles: Particles::new(scene, integrand),
+            volumes: Volumes::new(scene, integrand),
             integrand,
             method,
             integration: scene.integration,
@@ -356,9 +360,9 @@ impl Tracer {
         emission * reduction.of(integral)
     }
 
-    /// Returns the light of particles along the ray through the middle of a pixel, whatever the method.
+    /// Returns the light of particles and volumes along the ray through the middle of a pixel, whatever the method.
     fn of_particles(&self, scene: &Scene, plane: &ViewPlane, index: usize) -> DVec3 {
-        if self.particles.len() == 0 {
+        if self.particles.len() + self.volumes.len() == 0 {
             return DVec3::ZERO;
         }
         let width = scene.image.width as usize;
@@ -366,7 +370,8 @@ impl Tracer {
         let end = scene.depth.as_ref().map_or(1.0, |depth| {
             plane.end(&ray, depth.as_slice()[index], depth.along())
         });
-        self.particles.light(&ray, end) * self.integration.scale(ray.span.length())
+        (self.particles.light(&ray, end) + self.volumes.light(&ray, end))
+            * self.integration.scale(ray.span.length())
     }
 
     /// Returns how many pixels take some tenths of a second, at 50 ns a sample.
@@ -375,7 +380,7 @@ impl Tracer {
             .method
             .samples()
             .map_or(500, |samples| samples as usize);
-        let count = self.sources.len() + self.particles.len();
+        let count = self.sources.len() + self.particles.len() + 16 * self.volumes.len();
         (10_000_000 / (samples * count.max(1))).clamp(16, 16384)
     }
 }

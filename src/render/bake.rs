@@ -8,9 +8,9 @@ use glam::DVec3;
 use crate::error::{Error, Result};
 use crate::image::ImageSize;
 use crate::reference::Emitter;
-use crate::scene::{Measure, Ray, Reduction, Scene, ViewPlane};
+use crate::scene::{Measure, Profile, Ray, Reduction, Scene, ViewPlane};
 use crate::threads;
-use crate::volume::{BRICK, CellValue, Grid, Volume};
+use crate::volume::{BRICK, CellValue, Grid, Storage, Volume};
 
 /// Most places along an edge of a cell.
 const MOST_PARTS: u32 = 16;
@@ -35,6 +35,15 @@ impl Scene {
         self.any_falloff(|it| 2.0 * it.radius.hypot(softening) < cell)
     }
 
+    /// Returns the reciprocals that are the square of a distance near a core: of power 1 where all light falls off
+    /// with its square, else 2.
+    #[must_use]
+    pub fn reciprocal(&self) -> Storage {
+        let is_other = |it: crate::scene::Falloff| it.profile != Profile::InverseSquare;
+        let power = if self.any_falloff(is_other) { 2 } else { 1 };
+        Storage::Reciprocal { power }
+    }
+
     /// Refuses what has no emission at a point.
     fn check_bake(&self, value: CellValue) -> Result<()> {
         let refuse = |message: &str| Err(Error::Unsupported(message.to_owned()));
@@ -45,6 +54,9 @@ impl Scene {
         }
         if self.has_particles() || !self.waves.is_empty() {
             return refuse("particles are not baked: bake the scene without them");
+        }
+        if !self.volumes.is_empty() {
+            return refuse("volumes are not baked: bake the scene without them");
         }
         if let CellValue::Mean(parts) = value
             && !(1..=MOST_PARTS).contains(&parts)

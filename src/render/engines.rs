@@ -1,4 +1,5 @@
-//! The engines of light of a device, which draw into one film in turn: the wave, then particles.
+//! The engines of light of a device, which draw into one film in turn: the wave, then volumes, then
+//! particles.
 
 use std::ops::{ControlFlow, Range};
 
@@ -7,15 +8,18 @@ use crate::error::Result;
 use crate::glow::{Glow, GlowPlan};
 use crate::opencl::{Compute, Film, FilmFormat, RendererOptions};
 use crate::scene::{Ray, Scene};
+use crate::texture::{TexturePlan, Textures, Turn};
 use crate::wave::{DeviceDepths, Plan, Wave};
 
 #[derive(Debug)]
 pub(super) struct Engines {
     pub wave: Wave,
     glow: Glow,
+    textures: Textures,
     /// Which of them the last plan was for.
     has_wave: bool,
     has_glow: bool,
+    has_textures: bool,
 }
 
 /// What each of them is to draw.
@@ -23,6 +27,7 @@ pub(super) struct Engines {
 pub(super) struct FramePlan {
     wave: Option<Plan>,
     glow: Option<GlowPlan>,
+    textures: Option<TexturePlan>,
 }
 
 impl FramePlan {
@@ -37,23 +42,27 @@ impl Engines {
         Ok(Self {
             wave: Wave::new(compute, options)?,
             glow: Glow::new(options),
+            textures: Textures::new(options),
             has_wave: true,
             has_glow: false,
+            has_textures: false,
         })
     }
 
     /// Returns how many kernels were built.
     pub(super) fn kernel_count(&self) -> usize {
-        self.wave.kernel_count() + self.glow.kernel_count()
+        self.wave.kernel_count() + self.glow.kernel_count() + self.textures.kernel_count()
     }
 
     /// Returns what the last frame cost.
     pub(super) fn cost(&self) -> FrameCost {
-        match (self.has_wave, self.has_glow) {
-            (_, false) => self.wave.cost(),
-            (true, true) => self.wave.cost().then(self.glow.cost()),
-            (false, true) => self.glow.cost(),
-        }
+        let parts = [
+            self.has_wave.then(|| self.wave.cost()),
+            self.has_textures.then(|| self.textures.cost()),
+            self.has_glow.then(|| self.glow.cost()),
+        ];
+        let drawn = parts.into_iter().flatten();
+        drawn.reduce(FrameCost::then).unwrap_or_default()
     }
 
     /// Plans a frame of a valid scene, behind depths that the device has, if there are any: the scene then has none.
@@ -67,13 +76,19 @@ impl Engines {
         let depths = there.map(|depths| (depths.memory, depths.along));
         let glow = self.glow.plan(compute, scene, depths, format)?;
         self.has_glow = glow.is_some();
+        let textures = self.textures.plan(compute, scene, depths, format)?;
+        self.has_textures = textures.is_some();
         // Where nothing is drawn, somebody draws black.
-        self.has_wave = scene.source_count() > 0 || !self.has_glow;
+        self.has_wave = scene.source_count() > 0 || !(self.has_glow || self.has_textures);
         let wave = match self.has_wave {
             true => Some(self.wave.plan_behind(compute, scene, there, format)?),
             false => None,
         };
-        Ok(FramePlan { wave, glow })
+        Ok(FramePlan {
+            wave,
+            glow,
+            textures,
+        })
     }
 
     /// Plans single rays through a valid scene without particles.
@@ -83,10 +98,11 @@ impl Engines {
         scene: &Scene,
         rays: &[Ray],
     ) -> Result<FramePlan> {
-        (self.has_wave, self.has_glow) = (true, false);
+        (self.has_wave, self.has_glow, self.has_textures) = (true, false, false);
         Ok(FramePlan {
             wave: Some(self.wave.plan_rays(compute, scene, rays)?),
             glow: None,
+            textures: None,
         })
     }
 
@@ -151,11 +167,22 @@ impl Engines {
         is_unfinished: bool,
         draw_wave: impl FnOnce(&mut Wave, &mut Film) -> Result<()>,
     ) -> Result<()> {
-        film.leave_unfinished(is_unfinished || plan.glow.is_some());
+        let is_followed = is_unfinished || plan.glow.is_some();
+        film.leave_unfinished(is_followed || plan.textures.is_some());
         let mut drawn = draw_wave(&mut self.wave, film);
+        if let (Some(textures), true) = (&plan.textures, drawn.is_ok()) {
+            let turn = Turn {
+                adds: plan.wave.is_some(),
+                is_unfinished: is_followed,
+            };
+            drawn = self
+                .textures
+                .draw(compute, textures, band.clone(), film, turn);
+            film.add_to_what_is_there(false);
+        }
         film.leave_unfinished(is_unfinished);
         if let (Some(glow), true) = (&plan.glow, drawn.is_ok()) {
-            film.add_to_what_is_there(plan.wave.is_some());
+            film.add_to_what_is_there(plan.wave.is_some() || plan.textures.is_some());
             drawn = self.glow.draw(compute, glow, band, film);
             film.add_to_what_is_there(false);
         }
@@ -167,6 +194,9 @@ impl Engines {
     pub(super) fn settle(&mut self, compute: &Compute, plan: &FramePlan) -> Result<()> {
         if let Some(wave) = &plan.wave {
             self.wave.settle(compute, wave)?;
+        }
+        if plan.textures.is_some() {
+            self.textures.settle(compute)?;
         }
         match plan.glow {
             Some(_) => self.glow.settle(compute),

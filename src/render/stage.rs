@@ -63,6 +63,10 @@ impl Scene {
 
     /// Refuses what is seen in pictures only.
     pub(super) fn check_rays_alone(&self) -> Result<()> {
+        if !self.volumes.is_empty() {
+            let message = "volumes are seen in pictures only; integrate along rays without them";
+            return Err(Error::Unsupported(message.to_owned()));
+        }
         if !self.has_particles() {
             return Ok(());
         }

@@ -23,7 +23,7 @@ impl Scene {
     /// Returns the exposure, stops, that a scene file gets which names none. With it the light of the brightest source
     /// is 1 beside its core, 0.008 of the picture's height away as far off as the target: cores are white and the
     /// background is dark, whatever coefficients and the scale of the world are. 0 for a scene with a decay, with
-    /// surfaces or particles, or with a source that says by its peak how bright it is.
+    /// surfaces, particles or volumes, or with a source that says by its peak how bright it is.
     #[must_use]
     pub fn fitting_exposure(&self) -> f64 {
         self.exposure_of_brightest().unwrap_or(0.0)
@@ -38,7 +38,8 @@ impl Scene {
         let mut has_peak = self.decay.is_some()
             || !self.metaballs.is_empty()
             || !self.meshes.is_empty()
-            || self.has_particles();
+            || self.has_particles()
+            || !self.volumes.is_empty();
         self.for_each_shared(&mut |source| {
             has_peak |= source.has_peak();
             for light in source.lights() {

@@ -130,6 +130,10 @@ macro_rules! define_extent {
                     let (place, reach) = (particles.translate, particles.greatest_radius());
                     extent.ended.join(low + place - reach, high + place + reach);
                 }
+                for volume in self.volumes.iter() {
+                    let (place, reach) = (volume.center, volume.radius());
+                    extent.ended.join(place - reach, place + reach);
+                }
                 extent
             }
 

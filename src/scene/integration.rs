@@ -123,6 +123,8 @@ pub struct Integration {
     /// Whether meshes, metaballs and colliders hide the light behind them; without, they are seen through all of it, as
     /// in 2010 without hidden surfaces.
     pub hidden_surfaces: bool,
+    /// How the light of volumes is summed.
+    pub volumes: VolumeMethod,
 }
 
 impl Default for Integration {
@@ -134,6 +136,7 @@ impl Default for Integration {
             antialias: Antialias::default(),
             softening: 0.0,
             hidden_surfaces: true,
+            volumes: VolumeMethod::default(),
         }
     }
 }
@@ -282,6 +285,54 @@ pub(super) fn check_tolerance(tolerance: f64) -> Checked {
     }
     let message = "must lie between 1e-12 and 1, 1 excluded";
     Err(Fault::new("tolerance", message))
+}
+
+/// How the light of volumes is summed along rays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum VolumeMethod {
+    /// The part of each ray in a volume's box, divided evenly into pieces.
+    Ray {
+        /// Length of a piece at most, cells, 0.01 to 100.
+        step: f64,
+    },
+    /// Planes perpendicular to the view, at equal distances within the ball around a volume's box (Sakai 2006).
+    Slices {
+        /// How many, 1 to 65536.
+        count: u32,
+    },
+}
+
+impl Default for VolumeMethod {
+    /// Returns that by rays, in pieces of a cell.
+    fn default() -> Self {
+        Self::Ray { step: 1.0 }
+    }
+}
+
+impl VolumeMethod {
+    pub(super) fn check(&self) -> Checked {
+        match *self {
+            Self::Ray { step } => check_step(step),
+            Self::Slices { count } => check_slices(count),
+        }
+    }
+}
+
+pub(super) fn check_step(step: f64) -> Checked {
+    if (0.01..=100.0).contains(&step) {
+        return Ok(());
+    }
+    let message = format!("{step}; pieces of rays are 0.01 to 100 cells long");
+    Err(Fault::new("volume_step", message))
+}
+
+pub(super) fn check_slices(count: u32) -> Checked {
+    if (1..=65536).contains(&count) {
+        return Ok(());
+    }
+    let message = format!("{count}; a volume has 1 to 65536 slices");
+    Err(Fault::new("slices", message))
 }
 
 /// Where integrals are taken.

@@ -53,6 +53,7 @@ mod stamp;
 mod track;
 mod validate;
 mod values;
+mod volume;
 mod warnings;
 
 use glam::DVec3;
@@ -69,6 +70,7 @@ pub use file::{AnimatedScene, MethodKeys, SceneSpan};
 pub use group::{Group, Repeat, Rotation};
 pub use integration::{
     Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
+    VolumeMethod,
 };
 pub use light_element::LightElement;
 pub use lighting::{Lighting, Sun};
@@ -92,6 +94,7 @@ pub use source::*;
 pub(crate) use stamp::SourcesStamp;
 pub use track::{Interpolation, Track, TrackLoop, TrackNoise, TrackValue};
 pub(crate) use validate::CheckedSources;
+pub use volume::{Volume, VolumeInterpolation};
 
 use crate::image::{DepthImage, Display, ImageSize};
 use kinds::for_each_kind;
@@ -132,6 +135,8 @@ macro_rules! define_scene {
             pub metaballs: List<Metaballs>,
             /// Particles that shine.
             pub particles: List<Particles>,
+            /// Light that cells give off.
+            pub volumes: List<Volume>,
             /// Balls and streaks of light, given one by one; files have none. They do not lengthen the rays.
             pub light_elements: List<LightElement>,
             $($(#[$doc])* pub $list: List<$Type>,)*
@@ -156,6 +161,7 @@ macro_rules! define_scene {
                     meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
+                    volumes: List::new(),
                     light_elements: List::new(),
                     $($list: List::new(),)*
                 }

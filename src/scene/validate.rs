@@ -73,6 +73,7 @@ impl Scene {
         self.check_reduction()?;
         self.check_simulation()?;
         self.check_particles()?;
+        self.check_volumes()?;
         let brightness = self.brightness();
         let of_line = brightness.most / brightness.least_distance;
         if of_line > BRIGHTEST {

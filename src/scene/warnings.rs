@@ -173,6 +173,7 @@ impl Scene {
             return None; // what is told of those is another matter
         }
         if self.has_particles()
+            || !self.volumes.is_empty()
             || !self.meshes.is_empty()
             || self.colliders.iter().any(|it| it.visible)
         {

@@ -8,11 +8,17 @@ mod brick;
 mod file;
 mod grid;
 mod integral;
+mod light_ball;
+#[cfg(feature = "files")]
+mod read;
+mod texture;
 
 pub use brick::Brick;
 #[cfg(feature = "json")]
 pub use file::{VolumeFile, VolumeFormat};
 pub use grid::Grid;
+pub use light_ball::LightBall;
+pub use texture::{MOST_TEXELS, Storage, Texture, TextureOrigin};
 
 use crate::error::{Error, Result};
 use crate::memory;

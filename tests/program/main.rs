@@ -54,6 +54,7 @@ mod tracks; // draws scenes at times
 mod verify; // checks known rays, past sources and past whole scenes
 #[cfg(unix)] // as animate, whose scene they draw
 mod videos; // lays all frames into one file
+mod volumes; // reads volumes, and refuses what is none
 mod warnings; // is told what a scene was hardly meant to say
 #[cfg(unix)] // as cli
 mod watch; // draws scenes again that are saved

@@ -209,6 +209,7 @@ fn rich_scenes() -> Vec<Scene> {
             measure: [Measure::Parameter, Measure::Length][index % 2],
             softening: [0.0, number(random)][index / 2 % 2],
             hidden_surfaces: index % 2 == 0,
+            volumes: energywave::scene::VolumeMethod::Slices { count: 64 },
             ..Integration::default()
         };
         scene.display = Display {

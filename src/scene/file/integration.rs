@@ -2,9 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::integration::{check_divisions, check_strata, check_tolerance};
+use crate::scene::integration::{
+    check_divisions, check_slices, check_step, check_strata, check_tolerance,
+};
 use crate::scene::values::{Checked, Fault};
-use crate::scene::{Antialias, Integration, Measure, Method, Reduction, Sampling};
+use crate::scene::{Antialias, Integration, Measure, Method, Reduction, Sampling, VolumeMethod};
 
 /// `[integration]`: keys of all methods may stand there, whichever is chosen.
 #[derive(Debug, Clone, Deserialize, Serialize)]
@@ -26,6 +28,12 @@ pub(super) struct IntegrationTable {
     softening: f64,
     #[serde(skip_serializing_if = "is_true")]
     hidden_surfaces: bool,
+    #[serde(skip_serializing_if = "VolumeMethodName::is_ray")]
+    volume_method: VolumeMethodName,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    slices: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    volume_step: Option<f64>,
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
@@ -50,6 +58,10 @@ keys! { pub(in crate::scene) INTEGRATION_KEYS;
         "exact: a pixel is the mean over its square, or what one ray gets";
     softening: NOT_NEGATIVE, WORLD, Value("0"), "its square is added to every squared distance to a core";
     hidden_surfaces: Flag, NONE, Value("true"), "whether surfaces hide the light behind them";
+    volume_method: Word(&["ray", "slices"]), NONE, Value("\"ray\""),
+        "volumes: along rays, or on planes before the eye as in 2006";
+    slices: Whole(1, 65536), NONE, Value("256"), "volumes by slices: how many planes";
+    volume_step: from_to(0.01, 100.0), "cells", Value("1"), "volumes by rays: the length of a piece at most";
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
@@ -58,6 +70,21 @@ enum MethodName {
     Simpson,
     Jittered,
     Exact,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum VolumeMethodName {
+    #[default]
+    Ray,
+    Slices,
+}
+
+impl VolumeMethodName {
+    #[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
+    fn is_ray(&self) -> bool {
+        *self == Self::Ray
+    }
 }
 
 impl Default for IntegrationTable {
@@ -81,6 +108,9 @@ impl Default for IntegrationTable {
             antialias,
             softening,
             hidden_surfaces,
+            volume_method: VolumeMethodName::Ray,
+            slices: None,
+            volume_step: None,
         }
     }
 }
@@ -130,11 +160,28 @@ impl IntegrationTable {
             antialias: self.antialias,
             softening: self.softening,
             hidden_surfaces: self.hidden_surfaces,
+            volumes: match self.volume_method {
+                VolumeMethodName::Ray => VolumeMethod::Ray {
+                    step: self.volume_step.unwrap_or(1.0),
+                },
+                VolumeMethodName::Slices => VolumeMethod::Slices {
+                    count: self.slices.unwrap_or(256),
+                },
+            },
         }
     }
 
     pub(super) fn of(integration: &Integration) -> Self {
+        let (volume_method, slices, volume_step) = match integration.volumes {
+            VolumeMethod::Ray { step } => {
+                (VolumeMethodName::Ray, None, (step != 1.0).then_some(step))
+            }
+            VolumeMethod::Slices { count } => (VolumeMethodName::Slices, Some(count), None),
+        };
         let keep = Self {
+            volume_method,
+            slices,
+            volume_step,
             measure: integration.measure,
             reduction: integration.reduction,
             antialias: integration.antialias,
@@ -168,6 +215,8 @@ impl IntegrationTable {
 
     /// Checks what the scene does not hold: the keys of the method that was not chosen.
     pub(super) fn check(&self) -> Checked {
+        self.slices.map_or(Ok(()), check_slices)?;
+        self.volume_step.map_or(Ok(()), check_step)?;
         let keys = self.keys();
         match self.method {
             MethodName::Jittered => check_strata(keys.divisions)?,

@@ -20,10 +20,12 @@ mod piped;
 mod points;
 mod scan;
 mod span;
+mod text;
 mod time;
 mod toml;
 mod tracks;
 mod tree;
+mod volume;
 mod words;
 mod write;
 
@@ -58,8 +60,11 @@ use particles::ParticlesTable;
 pub(super) use points::LATTICE_KEYS;
 use scan::UNIT_COUNT;
 pub use span::SceneSpan;
+use text::text_of;
 pub(super) use time::TIME_KEYS;
 use time::TimeTable;
+use volume::VolumeTable;
+pub(super) use volume::{LIGHT_BALL_KEYS, VOLUME_KEYS};
 
 /// Changes a scene between its reading and its check.
 type Adjust<'a> = &'a mut dyn FnMut(&mut Scene, &MethodKeys) -> Result<()>;
@@ -102,6 +107,8 @@ macro_rules! define_scene_file {
             metaballs: Vec<MetaballsTable>,
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             particles: Vec<ParticlesTable>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            volume: Vec<VolumeTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
             #[serde(default, skip_serializing)]
             group: Vec<GroupTable>,
@@ -134,6 +141,7 @@ macro_rules! define_scene_file {
                     meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
+                    volumes: List::new(),
                     light_elements: List::new(),
                     $($list: std::mem::take(&mut self.$kind),)*
                 }
@@ -187,6 +195,7 @@ macro_rules! define_scene_file {
                 display: DisplayTable,
                 metaballs: Vec<MetaballsTable>,
                 particles: Vec<ParticlesTable>,
+                volume: Vec<VolumeTable>,
             ) -> Self {
                 Self {
                     camera: scene.camera.clone(),
@@ -204,6 +213,7 @@ macro_rules! define_scene_file {
                     mesh: scene.meshes.iter().map(MeshTable::of).collect(),
                     metaballs,
                     particles,
+                    volume,
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
                 }
@@ -254,11 +264,15 @@ impl SceneFile {
         self.mesh = shared(other.mesh, &self.mesh, MeshTable::share);
         self.metaballs = shared(other.metaballs, &self.metaballs, MetaballsTable::share);
         self.particles = shared(other.particles, &self.particles, ParticlesTable::share);
+        self.volume = shared(other.volume, &self.volume, VolumeTable::share);
     }
 
     /// Returns the exposure that fits the scene, if it names none and the brightness of its sources decides.
     fn exposure_of_brightest(mut self) -> Option<f64> {
         if !self.mesh.is_empty() || !self.metaballs.is_empty() || !self.particles.is_empty() {
+            return None;
+        }
+        if !self.volume.is_empty() {
             return None;
         }
         let mut scene = self.scene();
@@ -292,6 +306,9 @@ impl SceneFile {
         }
         for (index, table) in self.particles.iter().enumerate() {
             scene.particles.push(table.open(index, folder)?);
+        }
+        for (index, table) in self.volume.iter().enumerate() {
+            scene.volumes.push(table.open(index, folder)?);
         }
         self.display.fit_exposure(&mut scene);
         adjust(&mut scene, &self.integration.keys())?;
@@ -387,20 +404,6 @@ fn open(path: &Path) -> Result<Document<'static>> {
     let text = text_of(path, bytes)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     Document::read(is_json(path), text, Some(path), folder)
-}
-
-fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String> {
-    let fail = |reason: String| Error::input(path, reason);
-    let no_text = match String::from_utf8(bytes) {
-        Ok(text) => match text.find('\0') {
-            None => return Ok(text),
-            Some(at) => at,
-        },
-        Err(error) => error.utf8_error().valid_up_to(),
-    };
-    Err(fail(format!(
-        "not a text file (byte {no_text}); a scene is TOML or JSON in UTF-8"
-    )))
 }
 
 fn empty_file() -> SceneError {

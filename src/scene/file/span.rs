@@ -41,15 +41,16 @@ impl AnimatedScene {
         &self.document.motion.text
     }
 
-    /// Returns the files that it names: a depth image, a background, meshes, and those of particles.
+    /// Returns the files that it names: a depth image, a background, meshes, and those of particles and volumes.
     #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
         let Document { file, motion } = &self.document;
         let depth = file.depth.as_ref().map(DepthTable::file);
         let surfaces = file.metaballs.iter().filter_map(MetaballsTable::file);
         let lights = file.particles.iter().filter_map(ParticlesTable::file);
+        let cells = file.volume.iter().filter_map(VolumeTable::file);
         let images = depth.into_iter().chain(file.display.background_file());
-        let named = images.chain(surfaces).chain(lights);
+        let named = images.chain(surfaces).chain(lights).chain(cells);
         let named = named.map(|file| motion.folder.join(file));
         let meshes = file.mesh.iter();
         let meshes = meshes.flat_map(|mesh| mesh.files(&motion.folder));

@@ -30,7 +30,14 @@ const SINGLE: [&str; 10] = [
 ];
 
 /// Tables of which a scene has some, besides sources and groups, and lists within tables.
-const SEVERAL: [&str; 5] = ["wave", "collider", "mesh", "metaballs", "particles"];
+const SEVERAL: [&str; 6] = [
+    "wave",
+    "collider",
+    "mesh",
+    "metaballs",
+    "particles",
+    "volume",
+];
 const LISTS: [&str; 3] = ["layers", "control", "mixture"];
 
 /// Puts a reader's message about a value, or a table without a key, into plain words; gives the key at fault, too.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Serialize, Serializer};
 
-use super::{DepthTable, DisplayTable, MetaballsTable, ParticlesTable, SceneFile};
+use super::{DepthTable, DisplayTable, MetaballsTable, ParticlesTable, SceneFile, VolumeTable};
 use crate::error::{Error, Result};
 use crate::output::Output;
 use crate::scene::Scene;
@@ -14,6 +14,7 @@ const NO_FILE: &str =
     "the depth image is in no file that the scene could name; save it as OpenEXR and open it again";
 const NO_POINTS: &str = "particles with radii of their own are in no file that the scene could name; \
     write them as .csv and open that";
+const NO_CELLS: &str = "the cells of a volume are in no file that the scene could name";
 const NO_ELEMENTS: &str =
     "a scene file has no place for elements of light that are given one by one";
 const NO_BACKGROUND: &str =
@@ -37,10 +38,12 @@ impl Serialize for Scene {
         let particles = self.particles.iter().map(ParticlesTable::of);
         let particles: Option<Vec<_>> = particles.collect();
         let particles = particles.ok_or_else(|| serde::ser::Error::custom(NO_POINTS))?;
+        let volumes: Option<Vec<_>> = self.volumes.iter().map(VolumeTable::of).collect();
+        let volumes = volumes.ok_or_else(|| serde::ser::Error::custom(NO_CELLS))?;
         if !self.light_elements.is_empty() {
             return Err(serde::ser::Error::custom(NO_ELEMENTS));
         }
-        SceneFile::of(self, depth, display, metaballs, particles).serialize(writer)
+        SceneFile::of(self, depth, display, metaballs, particles, volumes).serialize(writer)
     }
 }
 

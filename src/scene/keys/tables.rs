@@ -6,7 +6,8 @@ use crate::image::ImageSize;
 use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
 use crate::scene::file::{
     BLOOM_KEYS, BOX_KEYS, COLLIDER_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS,
-    LATTICE_KEYS, MESH_KEYS, METABALLS_KEYS, PARTICLES_KEYS, PLANE_KEYS, SPHERE_KEYS, TIME_KEYS,
+    LATTICE_KEYS, LIGHT_BALL_KEYS, MESH_KEYS, METABALLS_KEYS, PARTICLES_KEYS, PLANE_KEYS,
+    SPHERE_KEYS, TIME_KEYS, VOLUME_KEYS,
 };
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
@@ -231,6 +232,18 @@ pub fn tables() -> Vec<Table> {
         Many,
         "Particles that shine, each as far as its radius",
         PARTICLES_KEYS,
+    ));
+    tables.push(Table::new(
+        "volume",
+        Many,
+        "Light that the cells of a grid give off",
+        VOLUME_KEYS,
+    ));
+    tables.push(Table::new(
+        "light_ball",
+        Inside,
+        "The cells of a ball of three shells, as that of 2006",
+        LIGHT_BALL_KEYS,
     ));
     tables.extend([
         Table::new(

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::{CellValue, Volume};
+use super::{CellValue, Storage, Volume};
 use crate::error::{Error, Result};
 use crate::image::{Display, ImageFile, ImageFormat};
 use crate::output::{Output, Sink, TextFile};
@@ -73,6 +73,7 @@ impl VolumeFormat {
 #[derive(Debug)]
 pub struct VolumeFile {
     format: VolumeFormat,
+    storage: Storage,
     target: Target,
     /// What stands beside it.
     beside: Option<TextFile>,
@@ -96,11 +97,13 @@ impl VolumeFile {
         Ok(match format {
             VolumeFormat::Slices { .. } => Self {
                 format,
+                storage: Storage::Emission,
                 target: Target::Image(ImageFile::create_as(path, ImageFormat::Exr)?),
                 beside: beside()?,
             },
             _ => Self {
                 format,
+                storage: Storage::Emission,
                 target: Target::Bytes(Output::create(path)?),
                 beside: match format {
                     VolumeFormat::Raw => beside()?,
@@ -110,13 +113,35 @@ impl VolumeFile {
         })
     }
 
+    /// Has cells stored in another way.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for reciprocals in formats that are for other programs.
+    pub fn storing(self, storage: Storage) -> Result<Self> {
+        let is_dense = matches!(
+            self.format,
+            VolumeFormat::Nrrd | VolumeFormat::Vti | VolumeFormat::Raw
+        );
+        match storage {
+            Storage::Reciprocal { .. } if !is_dense => Err(Error::Unsupported(
+                "reciprocals are of .nrrd, .vti and .raw files: other programs take the emission"
+                    .to_owned(),
+            )),
+            storage => Ok(Self { storage, ..self }),
+        }
+    }
+
     /// Writes all, and puts the file in its place. `notes`, names and values, go into what the format has for them.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written; nothing is left behind then. [`Error::Unsupported`] for an image of
     /// layers with more than 32768 pixels along an edge; [`Error::OutOfMemory`] for one that does not fit.
     pub fn write(self, volume: &Volume, notes: &[(String, String)]) -> Result<()> {
-        let notes: Vec<_> = facts(volume).into_iter().chain(notes.to_vec()).collect();
+        let storage = self.storage;
+        let notes: Vec<_> = facts(volume, storage)
+            .into_iter()
+            .chain(notes.to_vec())
+            .collect();
         match (self.target, self.format) {
             (Target::Image(file), format) => {
                 let display = Display {
@@ -131,9 +156,11 @@ impl VolumeFile {
             }
             (Target::Bytes(output), format) => output.write_with(|sink| match format {
                 VolumeFormat::Vdb { half } => vdb::write(sink, volume, half, &notes),
-                VolumeFormat::Nrrd => nrrd::write(sink, volume, &notes),
-                VolumeFormat::Vti => vti::write(sink, volume, &notes),
-                VolumeFormat::Raw | VolumeFormat::Slices { .. } => write_dense(sink, volume),
+                VolumeFormat::Nrrd => nrrd::write(sink, volume, storage, &notes),
+                VolumeFormat::Vti => vti::write(sink, volume, storage, &notes),
+                VolumeFormat::Raw | VolumeFormat::Slices { .. } => {
+                    write_dense(sink, volume, storage)
+                }
             })?,
         }
         let tiles = match self.format {
@@ -148,7 +175,7 @@ impl VolumeFile {
 }
 
 /// Returns what every file says of itself.
-fn facts(volume: &Volume) -> Vec<(String, String)> {
+fn facts(volume: &Volume, storage: Storage) -> Vec<(String, String)> {
     let values = match volume.value() {
         CellValue::Center => "emission at the middle of each cell".to_owned(),
         CellValue::Mean(parts) => {
@@ -156,18 +183,23 @@ fn facts(volume: &Volume) -> Vec<(String, String)> {
         }
     };
     let note = |name: &str, value: String| (name.to_owned(), value);
-    vec![
+    let mut facts = vec![
         note(
             "software",
             concat!("energywave ", env!("CARGO_PKG_VERSION")).to_owned(),
         ),
         note("values", values),
         note("unit", "linear RGB light a world unit of length".to_owned()),
-    ]
+    ];
+    if let Storage::Reciprocal { power } = storage {
+        facts.push(note("storage", "reciprocal".to_owned()));
+        facts.push(note("power", power.to_string()));
+    }
+    facts
 }
 
 /// Writes all cells, RGB after RGB, x fastest.
-fn write_dense(sink: &mut dyn Sink, volume: &Volume) -> io::Result<()> {
+fn write_dense(sink: &mut dyn Sink, volume: &Volume, storage: Storage) -> io::Result<()> {
     let [columns, rows, layers] = volume.grid().cells();
     let mut row = vec![0.0; 3 * columns as usize];
     let mut bytes = Vec::with_capacity(4 * row.len());
@@ -175,7 +207,10 @@ fn write_dense(sink: &mut dyn Sink, volume: &Volume) -> io::Result<()> {
         for y in 0..rows {
             volume.read_row(y, z, &mut row);
             bytes.clear();
-            bytes.extend(row.iter().flat_map(|value| value.to_le_bytes()));
+            bytes.extend(
+                row.iter()
+                    .flat_map(|value| storage.stored(*value).to_le_bytes()),
+            );
             sink.write_all(&bytes)?;
         }
     }

@@ -4,11 +4,12 @@ use std::io;
 
 use super::{numbers, write_dense};
 use crate::output::Sink;
-use crate::volume::Volume;
+use crate::volume::{Storage, Volume};
 
 pub(super) fn write(
     sink: &mut dyn Sink,
     volume: &Volume,
+    storage: Storage,
     notes: &[(String, String)],
 ) -> io::Result<()> {
     let grid = volume.grid();
@@ -30,5 +31,5 @@ pub(super) fn write(
          endian: little\nencoding: raw\n{notes}\n"
     );
     sink.write_all(header.as_bytes())?;
-    write_dense(sink, volume)
+    write_dense(sink, volume, storage)
 }

@@ -4,11 +4,12 @@ use std::io;
 
 use super::{numbers, write_dense};
 use crate::output::Sink;
-use crate::volume::Volume;
+use crate::volume::{Storage, Volume};
 
 pub(super) fn write(
     sink: &mut dyn Sink,
     volume: &Volume,
+    storage: Storage,
     notes: &[(String, String)],
 ) -> io::Result<()> {
     let grid = volume.grid();
@@ -30,6 +31,6 @@ pub(super) fn write(
     sink.write_all(header.as_bytes())?;
     let bytes = 12 * grid.cells().map(u64::from).iter().product::<u64>();
     sink.write_all(&bytes.to_le_bytes())?;
-    write_dense(sink, volume)?;
+    write_dense(sink, volume, storage)?;
     sink.write_all(b"\n</AppendedData>\n</VTKFile>\n")
 }

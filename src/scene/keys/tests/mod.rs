@@ -88,6 +88,10 @@ fn scene(table: &Table, but: &str, line: &str) -> String {
         "mesh" if !["vertices", "triangles", "file"].contains(&but) => {
             "vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\ntriangles = [[0, 1, 2]]\n".to_owned()
         }
+        // A volume has cells.
+        "volume" if !["file", "slices", "light_ball"].contains(&but) => {
+            "light_ball = {}\n".to_owned()
+        }
         "simulation" if but != "time" => "time = 70\n".to_owned(),
         _ => required(table, but).join("\n") + "\n",
     };

@@ -1,0 +1,131 @@
+//! The structs of `cl/texture/types.h`, in the same order, and what packs views and volumes into them.
+
+use std::f64::consts::LOG2_E;
+
+use glam::DVec3;
+
+use crate::image::DepthAlong;
+use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
+use crate::scene::{Scene, ViewPlane, Volume, VolumeInterpolation, VolumeMethod};
+
+device_struct! {
+    /// The rays of the picture, and what light becomes along them.
+    TextureView [112] {
+        first_pixel: [f32; 4] = 0,
+        column_step: [f32; 4] = 16,
+        row_step: [f32; 4] = 32,
+        toward: [f32; 4] = 48,
+        near: f32 = 64,
+        ray_length: f32 = 68,
+        scale: f32 = 72,
+        beta: f32 = 76,
+        per_length: f32 = 80,
+        absorbed: f32 = 84,
+        power: u32 = 88,
+        width: u32 = 92,
+        height: u32 = 96,
+        is_parallel: u32 = 100,
+        has_depth: u32 = 104,
+        is_along_axis: u32 = 108,
+    }
+}
+
+device_struct! {
+    /// A volume.
+    TextureVolume [112] {
+        to_x: [f32; 4] = 0,
+        to_y: [f32; 4] = 16,
+        to_z: [f32; 4] = 32,
+        red: f32 = 48,
+        green: f32 = 52,
+        blue: f32 = 56,
+        floor: f32 = 60,
+        columns: u32 = 64,
+        rows: u32 = 68,
+        layers: u32 = 72,
+        plane: u32 = 76,
+        channels: u32 = 80,
+        power: u32 = 84,
+        is_cubic: u32 = 88,
+        slices: u32 = 92,
+        step: f32 = 96,
+        middle: f32 = 100,
+        radius: f32 = 104,
+        padding: u32 = 108,
+    }
+}
+
+by_value!(TextureView, TextureVolume);
+
+/// Every struct of this engine that crosses to the device.
+pub const STRUCTS: &[StructLayout] = &[TextureView::LAYOUT, TextureVolume::LAYOUT];
+
+fn four(v: DVec3, last: f64) -> [f32; 4] {
+    [v.x, v.y, v.z, last].map(|it| it as f32)
+}
+
+impl TextureView {
+    /// Packs the view of a scene; `along` is what depths are measured along that end rays.
+    pub(super) fn new(scene: &Scene, plane: &ViewPlane, along: Option<DepthAlong>) -> Self {
+        let decay = scene.decay.filter(|decay| decay.power > 0);
+        // A decay of power 0 is alpha everywhere.
+        let alpha = scene.decay.map_or(1.0, |decay| decay.alpha);
+        let measure = scene.integration.scale(plane.ray_length) / plane.ray_length;
+        let kappa = scene.absorption.map_or(0.0, |absorption| absorption.kappa);
+        Self {
+            first_pixel: four(plane.first_pixel, 0.0),
+            column_step: four(plane.column_step, 0.0),
+            row_step: four(plane.row_step, 0.0),
+            toward: four(plane.forward, 0.0),
+            near: plane.near as f32,
+            ray_length: plane.ray_length as f32,
+            scale: (measure * alpha) as f32,
+            beta: decay.map_or(1.0, |decay| decay.beta) as f32,
+            per_length: decay.map_or(0.0, |_| 1.0 / plane.ray_length) as f32,
+            absorbed: (kappa * LOG2_E) as f32,
+            power: decay.map_or(0, |decay| decay.power),
+            width: scene.image.width,
+            height: scene.image.height,
+            is_parallel: u32::from(plane.is_parallel),
+            has_depth: u32::from(along.is_some()),
+            is_along_axis: u32::from(!matches!(along, None | Some(DepthAlong::Ray))),
+        }
+    }
+}
+
+impl TextureVolume {
+    pub(super) fn new(volume: &Volume, plane: &ViewPlane, method: VolumeMethod) -> Self {
+        let texture = &volume.texture;
+        let [columns, rows, layers] = texture.cells();
+        let to_cells = volume.to_cells();
+        let middle = 0.5 * (DVec3::from(texture.cells().map(f64::from)) - 1.0);
+        let from_eye = middle - to_cells * (volume.center - plane.eye);
+        let row = |axis: usize| four(to_cells.row(axis), from_eye[axis]);
+        let [red, green, blue] = (volume.coefficient * volume.color).as_vec3().to_array();
+        let (slices, step) = match method {
+            VolumeMethod::Ray { step } => (0, step),
+            VolumeMethod::Slices { count } => (count, 1.0),
+        };
+        Self {
+            to_x: row(0),
+            to_y: row(1),
+            to_z: row(2),
+            red,
+            green,
+            blue,
+            floor: texture.floor(),
+            columns,
+            rows,
+            layers,
+            plane: columns * rows * layers,
+            channels: texture.channels(),
+            power: texture.storage().power(),
+            is_cubic: u32::from(volume.interpolation == VolumeInterpolation::Cubic),
+            slices,
+            step: step as f32,
+            middle: (volume.center - plane.eye).dot(plane.forward) as f32,
+            radius: volume.radius() as f32,
+            padding: 0,
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The first use of a freshly built kernel: two small volumes, stored and interpolated in either way, whose light the
+//! reference integrates. Some drivers miscompile kernels.
+
+use glam::DVec3;
+
+use super::{Textures, Turn};
+use crate::error::{Error, Result};
+use crate::image::ImageSize;
+use crate::opencl::{Compute, Film, FilmFormat, Kernel, Program, RendererOptions};
+use crate::reference;
+use crate::scene::{Camera, Decay, Measure, Scene, Volume, VolumeInterpolation, VolumeMethod};
+use crate::volume::{Storage, Texture};
+
+/// No multiple of any number of lanes.
+const SIZE: ImageSize = ImageSize {
+    width: 11,
+    height: 9,
+};
+
+const CELLS: [u32; 3] = [5, 4, 6];
+
+/// The error that light may have, of the brightest: what short pieces leave, and half floats.
+const LIMIT: f32 = 5e-4;
+const LIMIT_OF_HALVES: f32 = 2e-3;
+
+/// Tests a kernel, unless that was done on this device before.
+///
+/// # Errors
+/// [`Error::SelfTest`] if it computes wrong.
+pub(super) fn self_test(
+    compute: &Compute,
+    format: FilmFormat,
+    options: &RendererOptions,
+    (kernel, program): (Kernel, &Program),
+) -> Result<Kernel> {
+    let is_experiment = options.skips_self_test || compute.device().is_simulator;
+    if is_experiment || program.was_tested() {
+        return Ok(kernel);
+    }
+    let mut tester = Textures::new(options);
+    tester.kernels.insert(format, kernel);
+    let turn = Turn {
+        adds: false,
+        is_unfinished: false,
+    };
+    for volume in volumes()? {
+        let scene = scene(volume);
+        let plan = tester.prepare(compute, &scene, None, format)?;
+        let pixels = SIZE.pixels();
+        let mut film = Film::in_format(compute, format, SIZE.width, SIZE.height)?;
+        film.reserve_band(compute, pixels, 1)?;
+        tester.draw(compute, &plan, 0..pixels as u32, &mut film, turn)?;
+        let mut found = vec![[0.0; 4]; pixels];
+        film.read(compute, &mut found)?;
+        tester.settle(compute)?;
+        let expected = reference::render(&scene)?;
+        if let Some(reason) = difference(&found, expected.as_slice(), format) {
+            let device = compute.device();
+            return Err(Error::SelfTest {
+                device: device.name.clone(),
+                driver: format!("{} {}", device.platform, device.driver),
+                reason,
+            });
+        }
+    }
+    program.mark_tested();
+    let lost = || Error::Unsupported("the kernel of volumes was lost in its test".to_owned());
+    tester.kernels.remove(&format).ok_or_else(lost)
+}
+
+/// Makes one of emission, RGB and linear, and one of reciprocals, cubic.
+fn volumes() -> Result<[Volume; 2]> {
+    let count: u32 = CELLS.iter().product();
+    let emission = (0..3 * count).map(|index| (index * 37 % 101) as f32 / 101.0);
+    let emission = Texture::new(CELLS, emission.collect(), Storage::Emission)?;
+    let [columns, rows, _] = CELLS;
+    let distance2 = |index: u32| {
+        let cell = [
+            index % columns,
+            index / columns % rows,
+            index / columns / rows,
+        ];
+        DVec3::from(cell.map(f64::from)).distance_squared(DVec3::new(1.7, 1.2, 3.1)) as f32
+    };
+    let storage = Storage::Reciprocal { power: 2 };
+    let reciprocals = Texture::new(CELLS, (0..count).map(distance2).collect(), storage)?;
+    Ok([
+        (emission, VolumeInterpolation::Linear),
+        (reciprocals, VolumeInterpolation::Cubic),
+    ]
+    .map(|(texture, interpolation)| {
+        let mut volume = Volume::new(texture);
+        volume.size = DVec3::new(1.6, 1.9, 1.3);
+        volume.rotation = DVec3::new(-20.0, 35.0, 70.0);
+        volume.interpolation = interpolation;
+        volume
+    }))
+}
+
+fn scene(volume: Volume) -> Scene {
+    let mut scene = Scene::new(Camera::new(DVec3::new(0.5, -4.0, 1.0), DVec3::ZERO));
+    scene.image = SIZE;
+    scene.camera.fov_y = 30.0_f64.to_radians();
+    scene.integration.measure = Measure::Length;
+    scene.integration.volumes = VolumeMethod::Ray { step: 0.05 };
+    scene.decay = Some(Decay::new(0.5, 0.2));
+    scene.volumes.push(volume);
+    scene
+}
+
+/// Says where light is not what it is to be.
+fn difference(found: &[[f32; 4]], expected: &[f32], format: FilmFormat) -> Option<String> {
+    let expected = expected.as_chunks::<4>().0;
+    let colors = expected.iter().flat_map(|pixel| &pixel[..3]);
+    let most = colors.fold(0.0_f32, |most, it| most.max(*it));
+    let limit = match format {
+        FilmFormat::Floats | FilmFormat::Image { has_halves: false } => LIMIT,
+        _ => LIMIT_OF_HALVES,
+    };
+    let is_right = |found: f32, expected: f32| (found - expected).abs() <= limit * most;
+    let mut pixels = found.iter().zip(expected).enumerate();
+    let wrong = pixels.find(|(_, (found, expected))| {
+        !(0..3).all(|channel| is_right(found[channel], expected[channel]))
+    });
+    wrong.map(|(index, (found, expected))| {
+        format!("the light of a volume along ray {index} is {found:?}; it is {expected:?}")
+    })
+}

@@ -1,0 +1,167 @@
+//! Volumes: rays through them get the integral that the reference takes, however cells are stored and interpolated;
+//! slices approach it as they grow more; and what is turned looks another.
+
+use energywave::glam::DVec3;
+use energywave::image::{DepthAlong, DepthImage, ImageSize, RadianceImage};
+use energywave::scene::{Camera, Decay, Volume, VolumeInterpolation, VolumeMethod};
+use energywave::volume::{Storage, Texture};
+use energywave::{Device, ErrorKind, Renderer, RendererOptions, Scene};
+
+use crate::common;
+
+/// Of the brightest: what middles of short pieces leave of an integral through kinks at every cell.
+const ERROR: f32 = 2e-4;
+
+/// Of the brightest: what so many slices leave.
+const ERROR_OF_SLICES: f32 = 1e-3;
+
+const CELLS: [u32; 3] = [20, 24, 18];
+
+/// Makes a cloud that is dark at the box's faces, RGB; as reciprocals it is the inverse of a distance to a point.
+fn texture(storage: Storage) -> Texture {
+    let plane: u32 = CELLS.iter().product();
+    let value = |index: u32| {
+        let (channel, place) = (index / plane, index % plane);
+        let cell = [
+            place % CELLS[0],
+            place / CELLS[0] % CELLS[1],
+            place / CELLS[0] / CELLS[1],
+        ];
+        let at = [0, 1, 2].map(|axis| (f64::from(cell[axis]) + 0.5) / f64::from(CELLS[axis]));
+        let at = 2.0 * DVec3::from(at) - 1.0;
+        let away2 = (at - DVec3::new(0.1, -0.05, 0.2)).length_squared();
+        let light = match storage {
+            Storage::Emission => {
+                let lobe = (-9.0 * away2).exp() * (1.0 + 0.5 * (9.0 * at.x).sin());
+                let rim = at.abs().max_element();
+                lobe * (1.0 - rim.powi(4)) * (1.0 - 0.2 * f64::from(channel))
+            }
+            _ => 1.0 / away2.sqrt(),
+        };
+        storage.stored(light as f32)
+    };
+    Texture::new(CELLS, (0..3 * plane).map(value).collect(), storage).unwrap()
+}
+
+fn scene(storage: Storage) -> Scene {
+    let mut scene = Scene::new(Camera::new(DVec3::new(0.4, -4.0, 1.2), DVec3::ZERO));
+    scene.image = ImageSize {
+        width: 45,
+        height: 37,
+    };
+    scene.integration.volumes = VolumeMethod::Ray { step: 0.1 };
+    let mut volume = Volume::new(texture(storage));
+    volume.size = DVec3::new(1.6, 2.0, 1.4);
+    volume.rotation = DVec3::new(-20.0, 35.0, 70.0);
+    volume.color = DVec3::new(0.9, 0.7, 0.5);
+    scene.volumes.push(volume);
+    scene
+}
+
+fn reference(scene: &Scene) -> RadianceImage {
+    Renderer::new(&Device::reference())
+        .unwrap()
+        .render(scene)
+        .unwrap()
+}
+
+/// Returns the greatest difference of any pixel, and the greatest light.
+fn difference(one: &RadianceImage, other: &RadianceImage) -> f32 {
+    let pairs = one.as_slice().iter().zip(other.as_slice());
+    let worst = pairs
+        .map(|(one, other)| (one - other).abs())
+        .fold(0.0, f32::max);
+    let colors = other
+        .as_slice()
+        .chunks_exact(4)
+        .flat_map(|pixel| &pixel[..3]);
+    worst / colors.fold(0.0_f32, |most, it| most.max(*it))
+}
+
+#[test]
+fn rays_get_the_integral_of_what_is_interpolated() {
+    let mut renderers = [
+        Renderer::new(&common::device()).unwrap(),
+        common::renderer(1, ""),
+    ];
+    for storage in [Storage::Emission, Storage::Reciprocal { power: 2 }] {
+        for interpolation in [VolumeInterpolation::Linear, VolumeInterpolation::Cubic] {
+            let mut scene = scene(storage);
+            scene.volumes[0].interpolation = interpolation;
+            if interpolation == VolumeInterpolation::Cubic {
+                scene.decay = Some(Decay::new(0.5, 0.2));
+                let depths =
+                    (0..45 * 37).map(|pixel| if pixel % 45 < 20 { 4.1 } else { f32::INFINITY });
+                let depth = DepthImage::new(scene.image, DepthAlong::Ray, depths.collect());
+                scene.depth = Some(depth.unwrap());
+            }
+            let expected = reference(&scene);
+            for renderer in &mut renderers {
+                let error = difference(&renderer.render(&scene).unwrap(), &expected);
+                println!("{storage:?}, {interpolation:?}: {error:.1e}");
+                assert!(error < ERROR, "{storage:?}, {interpolation:?}: {error}");
+            }
+            // A scene that is turned a little is another.
+            scene.volumes[0].rotation.x += 1.0;
+            let other = renderers[0].render(&scene).unwrap();
+            assert!(difference(&other, &expected) > ERROR);
+        }
+    }
+}
+
+#[test]
+fn slices_approach_the_integral_as_they_grow_more() {
+    let mut renderer = Renderer::new(&common::device()).unwrap();
+    let mut scene = scene(Storage::Emission);
+    let expected = reference(&scene);
+    let mut errors = Vec::new();
+    for count in [8, 32, 256, 1024] {
+        scene.integration.volumes = VolumeMethod::Slices { count };
+        errors.push(difference(&renderer.render(&scene).unwrap(), &expected));
+    }
+    println!("{errors:?}");
+    assert!(errors[3] < ERROR_OF_SLICES, "{errors:?}");
+    assert!(
+        errors[0] > 10.0 * ERROR_OF_SLICES,
+        "few slices pass, too: {errors:?}"
+    );
+}
+
+#[test]
+fn a_kernel_that_sums_beside_the_middles_is_found_out() {
+    let spoiled = common::compiled_with(&RendererOptions::default(), "-D MIDDLE=0.9f");
+    let mut renderer = Renderer::with_options(&common::device(), &spoiled).unwrap();
+    let error = renderer.render(&scene(Storage::Emission)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::SelfTest, "{error}");
+    assert!(
+        error.to_string().contains("the light of a volume"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_volume_of_ones_gives_the_length_of_each_ray_in_its_box() {
+    let mut renderer = Renderer::new(&common::device()).unwrap();
+    let mut scene = scene(Storage::Emission);
+    let mut volume =
+        Volume::new(Texture::new([3, 2, 5], vec![1.0; 30], Storage::Emission).unwrap());
+    (volume.size, volume.rotation) = (DVec3::new(1.0, 0.5, 1.5), DVec3::new(10.0, 0.0, 25.0));
+    scene.volumes = vec![volume.clone()].into();
+    let image = renderer.render(&scene).unwrap();
+    let plane = scene.view_plane();
+    let light: f32 = image.as_slice().chunks_exact(4).map(|pixel| pixel[0]).sum();
+    let inside = |point: DVec3| {
+        let turn = |angle: f64| energywave::glam::DQuat::from_rotation_z(angle.to_radians());
+        let place = turn(-25.0) * point;
+        let place = energywave::glam::DQuat::from_rotation_x(-10.0_f64.to_radians()) * place;
+        (place.abs().cmple(0.5 * volume.size)).all()
+    };
+    let mut expected = 0.0;
+    for pixel in 0..45 * 37 {
+        let ray = plane.ray(pixel % 45, pixel / 45);
+        let lit = (0..2000).filter(|k| inside(ray.at((f64::from(*k) + 0.5) / 2000.0)));
+        expected += ray.span.length() * lit.count() as f64 / 2000.0;
+    }
+    println!("{light} {expected}");
+    assert!((f64::from(light) - expected).abs() < 1e-3 * expected);
+}
