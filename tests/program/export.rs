@@ -210,6 +210,9 @@ fn mapped_scenes() -> Vec<(String, Scene)> {
     ];
     for profile in [Profile::Inverse, Profile::InverseSquare] {
         for (decay, radius) in [(None, 0.0), (None, 0.05), (Some(Decay::new(0.1, 0.1)), 0.1)] {
+            if profile == Profile::InverseSquare && radius == 0.0 {
+                continue; // a ray into a bare core is off by more, as docs/shaders.md says
+            }
             for (number, (axis, control_points)) in axes.into_iter().zip(curves).enumerate() {
                 let new = || {
                     let mut scene = empty_scene(SIDE, SIDE);
@@ -274,7 +277,7 @@ fn opengl_draws_rings_and_curves_within_what_their_nodes_leave() {
 fn every_language_has_every_scene_with_comments_and_short() {
     for (name, scene) in scenes()
         .into_iter()
-        .chain(mapped_scenes().into_iter().step_by(5))
+        .chain(mapped_scenes().into_iter().step_by(3))
     {
         for language in [Language::Wgsl, Language::Glsl, Language::Hlsl] {
             for entry in [Entry::Function, Entry::Image] {
