@@ -37,7 +37,8 @@ pub enum Entry {
     /// The function `wave_light` alone: from the origin, the direction (of length 1) and the end depth of a ray, linear
     /// RGB.
     Function,
-    /// Also a picture by the scene's camera: the fragment stage `image`, and in WGSL and HLSL the vertex stage `screen`.
+    /// Also a picture by the scene's camera: the fragment stage `image`, and in WGSL and HLSL the vertex stage
+    /// `screen`.
     Image,
 }
 
@@ -346,7 +347,7 @@ fn refuse(scene: &Scene) -> Result<()> {
 
 fn no_form(what: &str) -> Error {
     Error::Unsupported(format!(
-        "{what} has no form in shaders, which have point, line, segment, beam, ring and curve with 1/d or 1/d^2: export \
-         a scene without it, or give the engine a baked volume"
+        "{what} has no form in shaders, which have point, line, segment, beam, ring and curve with 1/d or 1/d^2: \
+         export a scene without it, or give the engine a baked volume"
     ))
 }
