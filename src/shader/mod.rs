@@ -222,7 +222,7 @@ impl Block {
     /// Returns the text in WGSL.
     fn text(&self, entry: Entry) -> String {
         let mut text = LICENCE.to_owned();
-        text += "// Light along a ray, the integral of field times decay: linear RGB, before exposure and tone mapping.\n";
+        text += "// Light along a ray, the integral of field times decay: linear RGB before tone mapping.\n";
         text += &self.layout();
         text += &format!("\n{RAY}");
         for (is_mapped, part) in [(false, CLOSED_FORM), (true, NODES)] {
@@ -248,7 +248,7 @@ impl Block {
     fn layout(&self) -> String {
         let mut text = String::from(
             "\n// The scene's values. Before each field its offset in bytes.\nstruct Wave {\n\
-             \x20   /* 0 */ rays: vec4f, // |E - S|; beta |E - S|, or 0 without decay; what all light is multiplied with;\n\
+             \x20   /* 0 */ rays: vec4f, // |E - S|; beta |E - S|, or 0 without decay; what multiplies all light;\n\
              \x20                        // no squared distance to a core is taken below the last\n\
              \x20   /* 16 */ eye: vec4f, // last 1, or 0 where rays are parallel\n\
              \x20   /* 32 */ corner: vec4f, // from the eye to the top left corner of the projection plane\n\
@@ -276,8 +276,8 @@ impl Block {
     /// Returns the function that adds all light up.
     fn sum(&self) -> String {
         let mut text = String::from(
-            "\n// Returns the light along a ray: linear RGB. The direction is of length 1, depth the length at which the\n\
-             // ray is hidden, world units from its origin.\n\
+            "\n// Returns the light along a ray: linear RGB. The direction is of length 1, depth the length at which\n\
+             // the ray is hidden, world units from its origin.\n\
              fn wave_light(origin: vec3f, direction: vec3f, depth: f32) -> vec3f {\n\
              \x20   let ray = Ray(origin, direction, clamp(depth, 0.0, wave.rays.x));\n\
              \x20   var light = vec3f(0.0);\n",
