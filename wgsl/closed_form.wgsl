@@ -15,10 +15,6 @@ struct Ends {
     a: f32,           // of f^2 = a v^2 + ..
 }
 
-fn nearness(x: f32) -> f32 {
-    return select(1.0, wave.rays.y / (x + wave.rays.y), wave.rays.y > 0.0);
-}
-
 fn ends_of(q: Quadratic, stretch: Stretch) -> Ends {
     let x0 = q.rate * (stretch.from_ - q.nearest);
     let x1 = q.rate * (stretch.to - q.nearest);

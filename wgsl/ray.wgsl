@@ -39,3 +39,8 @@ fn to_line(ray: Ray, point: vec3f, direction: vec3f, light: Light) -> Quadratic 
 fn zero_along(at: f32, slope: f32, end: f32) -> f32 {
     return clamp(-at / select(slope, 1e-30, abs(slope) < 1e-30), 0.0, end);
 }
+
+// Returns n, whose square is the decay.
+fn nearness(x: f32) -> f32 {
+    return select(1.0, wave.rays.y / (x + wave.rays.y), wave.rays.y > 0.0);
+}

@@ -37,7 +37,8 @@ pub enum Entry {
     /// The function `wave_light` alone: from the origin, the direction (of length 1) and the end depth of a ray, linear
     /// RGB.
     Function,
-    /// Also a picture by the scene's camera: the fragment stage `image`, and in WGSL and HLSL the vertex stage `screen`.
+    /// Also a picture by the scene's camera: the fragment stage `image`, and in WGSL and HLSL the vertex stage
+    /// `screen`.
     Image,
 }
 
@@ -58,12 +59,17 @@ const MOST_BYTES: usize = 16384;
 const LICENCE: &str = "// Written by energywave, MIT OR Apache-2.0.\n";
 const RAY: &str = include_str!("../../wgsl/ray.wgsl");
 const CLOSED_FORM: &str = include_str!("../../wgsl/closed_form.wgsl");
+const NODES: &str = include_str!("../../wgsl/nodes.wgsl");
+const MAPPED: &str = include_str!("../../wgsl/mapped.wgsl");
 const IMAGE: &str = include_str!("../../wgsl/image.wgsl");
 
 /// A packed source that a shader may have.
 trait Exported {
     /// The text of its kind; `None` where it has no closed form.
     const TEXT: Option<&'static str>;
+
+    /// Whether it is integrated by nodes.
+    const IS_MAPPED: bool = false;
 
     /// How its field falls off.
     fn falloff(&self) -> Falloff;
@@ -73,6 +79,11 @@ trait Exported {
 
     /// Returns colour times coefficient times measure.
     fn emission(&self) -> Row;
+
+    /// Returns whether its light changes along its core, which no shader has.
+    fn changes_along(&self) -> bool {
+        false
+    }
 }
 
 impl Shader {
@@ -124,6 +135,7 @@ struct Kind {
     name: &'static str,
     type_name: &'static str,
     text: &'static str,
+    is_mapped: bool,
     count: usize,
     first_byte: usize,
 }
@@ -181,7 +193,8 @@ impl Block {
         if list.is_empty() {
             return Ok(());
         }
-        let Some(text) = Device::TEXT else {
+        let is_uneven = list.iter().any(Exported::changes_along);
+        let Some(text) = Device::TEXT.filter(|_| !is_uneven) else {
             return Err(no_form(&format!(
                 "[[{name}]], or light that changes along a core,"
             )));
@@ -190,6 +203,7 @@ impl Block {
             name,
             type_name,
             text,
+            is_mapped: Device::IS_MAPPED,
             count: list.len(),
             first_byte: size_of::<Row>() * self.rows.len(),
         });
@@ -208,13 +222,20 @@ impl Block {
     /// Returns the text in WGSL.
     fn text(&self, entry: Entry) -> String {
         let mut text = LICENCE.to_owned();
-        text += "// Light along a ray, the integral of field times decay: linear RGB, before exposure and tone mapping.\n";
+        text += "// Light along a ray, the integral of field times decay: linear RGB before tone mapping.\n";
         text += &self.layout();
-        for part in [RAY, CLOSED_FORM] {
-            text += &format!("\n{part}");
+        text += &format!("\n{RAY}");
+        for (is_mapped, part) in [(false, CLOSED_FORM), (true, NODES)] {
+            if self.kinds.iter().any(|kind| kind.is_mapped == is_mapped) {
+                text += &format!("\n{part}");
+            }
         }
         for kind in &self.kinds {
             text += &format!("\n{}", kind.text);
+            if kind.is_mapped {
+                let mapped = MAPPED.replace("KIND", kind.name);
+                text += &format!("\n{}", mapped.replace("TYPE", kind.type_name));
+            }
         }
         text += &self.sum();
         if entry == Entry::Image {
@@ -227,7 +248,7 @@ impl Block {
     fn layout(&self) -> String {
         let mut text = String::from(
             "\n// The scene's values. Before each field its offset in bytes.\nstruct Wave {\n\
-             \x20   /* 0 */ rays: vec4f, // |E - S|; beta |E - S|, or 0 without decay; what all light is multiplied with;\n\
+             \x20   /* 0 */ rays: vec4f, // |E - S|; beta |E - S|, or 0 without decay; what multiplies all light;\n\
              \x20                        // no squared distance to a core is taken below the last\n\
              \x20   /* 16 */ eye: vec4f, // last 1, or 0 where rays are parallel\n\
              \x20   /* 32 */ corner: vec4f, // from the eye to the top left corner of the projection plane\n\
@@ -255,8 +276,8 @@ impl Block {
     /// Returns the function that adds all light up.
     fn sum(&self) -> String {
         let mut text = String::from(
-            "\n// Returns the light along a ray: linear RGB. The direction is of length 1, depth the length at which the\n\
-             // ray is hidden, world units from its origin.\n\
+            "\n// Returns the light along a ray: linear RGB. The direction is of length 1, depth the length at which\n\
+             // the ray is hidden, world units from its origin.\n\
              fn wave_light(origin: vec3f, direction: vec3f, depth: f32) -> vec3f {\n\
              \x20   let ray = Ray(origin, direction, clamp(depth, 0.0, wave.rays.x));\n\
              \x20   var light = vec3f(0.0);\n",
@@ -326,7 +347,7 @@ fn refuse(scene: &Scene) -> Result<()> {
 
 fn no_form(what: &str) -> Error {
     Error::Unsupported(format!(
-        "{what} has no closed form in shaders, which have point, line, segment and beam with 1/d or 1/d^2: export a \
-         scene without it, or give the engine a baked volume"
+        "{what} has no form in shaders, which have point, line, segment, beam, ring and curve with 1/d or 1/d^2: \
+         export a scene without it, or give the engine a baked volume"
     ))
 }

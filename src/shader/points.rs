@@ -1,7 +1,8 @@
-//! Points of light in a shader's block; rings and curves have no closed form.
+//! Points, rings and curves of light in a shader's block; paths have no form there.
 
 use super::{Exported, Row};
 use crate::wave::pack::layout::Falloff;
+use crate::wave::pack::path::LightPath;
 use crate::wave::pack::{curve, sphere, torus};
 
 impl Exported for sphere::Sphere {
@@ -20,27 +21,57 @@ impl Exported for sphere::Sphere {
     }
 }
 
-macro_rules! without_form {
-    ($($Type:ty),*) => {
-        $(impl Exported for $Type {
-            const TEXT: Option<&'static str> = None;
+impl Exported for torus::Torus {
+    const TEXT: Option<&'static str> = Some(include_str!("../../wgsl/torus.wgsl"));
+    const IS_MAPPED: bool = true;
 
-            fn falloff(&self) -> Falloff {
-                self.falloff
-            }
+    fn falloff(&self) -> Falloff {
+        self.falloff
+    }
 
-            fn rows(&self) -> Vec<Row> {
-                Vec::new()
-            }
+    fn rows(&self) -> Vec<Row> {
+        let [x, y, z, _] = self.center;
+        vec![[x, y, z, self.major_radius], self.axis]
+    }
 
-            fn emission(&self) -> Row {
-                self.emission
-            }
-        })*
-    };
+    fn emission(&self) -> Row {
+        self.emission
+    }
 }
-without_form!(
-    torus::Torus,
-    curve::Curve,
-    crate::wave::pack::path::LightPath
-);
+
+impl Exported for curve::Curve {
+    const TEXT: Option<&'static str> = Some(include_str!("../../wgsl/curve.wgsl"));
+    const IS_MAPPED: bool = true;
+
+    fn falloff(&self) -> Falloff {
+        self.falloff
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        vec![self.middle, self.velocity, self.second]
+    }
+
+    fn emission(&self) -> Row {
+        self.emission
+    }
+
+    fn changes_along(&self) -> bool {
+        self.spline_count > 0
+    }
+}
+
+impl Exported for LightPath {
+    const TEXT: Option<&'static str> = None;
+
+    fn falloff(&self) -> Falloff {
+        self.falloff
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        Vec::new()
+    }
+
+    fn emission(&self) -> Row {
+        self.emission
+    }
+}

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use energywave::image::ImageSize;
-use energywave::scene::{Antialias, Beam, BeamEnd, Cylinder, Decay, Profile, Segment, Sphere};
+use energywave::scene::{
+    Antialias, Beam, BeamEnd, Curve, Cylinder, Decay, Profile, Segment, Sphere, Torus,
+};
 use energywave::shader::{Entry, Language, export};
 use energywave::{RadianceImage, Scene, reference};
 use glam::DVec3;
@@ -18,6 +20,9 @@ const MOST_OFF: f64 = 1e-4;
 
 /// The same for 1/d^2 of a core without thickness: beside it, float32 places lose digits that kernels carry along.
 const MOST_OFF_BESIDE_BARE_CORES: f64 = 5e-4;
+
+/// What the nodes of rings and curves leave, of the pixel's brightest channel.
+const MOST_OFF_BY_NODES: f64 = 1e-2;
 
 /// Small pictures: the reference takes its time.
 const SIDE: u32 = 48;
@@ -178,9 +183,102 @@ fn opengl_draws_an_exported_scene_as_the_reference_does() {
     }
 }
 
+/// Rings and curves from all sides.
+fn mapped_scenes() -> Vec<(String, Scene)> {
+    let mut scenes = Vec::new();
+    let curves = [
+        [
+            DVec3::new(-1.0, -0.5, -0.5),
+            DVec3::new(0.3, 0.9, 0.4),
+            DVec3::new(0.8, -0.8, 0.7),
+        ],
+        [
+            DVec3::new(-1.0, 0.1, 0.5),
+            DVec3::new(0.1, 0.2, -1.5),
+            DVec3::new(1.0, 0.3, 0.6),
+        ],
+        [
+            DVec3::new(-0.7, 0.0, 0.2),
+            DVec3::ZERO,
+            DVec3::new(0.7, 0.0, -0.2),
+        ],
+    ];
+    let axes = [
+        DVec3::new(0.3, -0.5, 0.8),
+        DVec3::Y,
+        DVec3::new(1.0, 0.1, 0.2),
+    ];
+    for profile in [Profile::Inverse, Profile::InverseSquare] {
+        for (decay, radius) in [(None, 0.0), (None, 0.05), (Some(Decay::new(0.1, 0.1)), 0.1)] {
+            if profile == Profile::InverseSquare && radius == 0.0 {
+                continue; // a ray into a bare core is off by more, as docs/shaders.md says
+            }
+            for (number, (axis, control_points)) in axes.into_iter().zip(curves).enumerate() {
+                let new = || {
+                    let mut scene = empty_scene(SIDE, SIDE);
+                    scene.decay = decay;
+                    scene.integration.antialias = Antialias::None;
+                    scene
+                };
+                let mut rings = new();
+                let ring = Torus::new(0.8);
+                rings.tori.push(Torus {
+                    axis,
+                    radius,
+                    profile,
+                    ..ring
+                });
+                scenes.push((
+                    format!("ring {number} {profile:?} {decay:?} {radius}"),
+                    rings,
+                ));
+                let mut scene = new();
+                let curve = Curve::new(control_points);
+                scene.curves.push(Curve {
+                    radius,
+                    profile,
+                    ..curve
+                });
+                scenes.push((
+                    format!("curve {number} {profile:?} {decay:?} {radius}"),
+                    scene,
+                ));
+            }
+        }
+    }
+    scenes
+}
+
+#[test]
+fn opengl_draws_rings_and_curves_within_what_their_nodes_leave() {
+    let folder = Folder::new();
+    for (name, scene) in mapped_scenes() {
+        let shader = export(&scene, Language::Glsl, Entry::Image).unwrap();
+        let uniforms = shader.uniforms(&scene).unwrap();
+        let Some(found) = drawn(folder.path(), &shader.text, &uniforms) else {
+            return println!("skipped: no OpenGL");
+        };
+        let expected = reference::render(&scene).unwrap();
+        let off = error(&found, &expected);
+        println!("{name}: {off:.1e}");
+        assert!(off <= MOST_OFF_BY_NODES, "{name}: {off:e}");
+        let spoiled = shader.text.replace("0.1894506", "0.2894506");
+        assert_ne!(spoiled, shader.text);
+        let found = drawn(folder.path(), &spoiled, &uniforms).unwrap();
+        let off = error(&found, &expected);
+        assert!(
+            off > MOST_OFF_BY_NODES,
+            "{name}: a spoiled text passes: {off:e}"
+        );
+    }
+}
+
 #[test]
 fn every_language_has_every_scene_with_comments_and_short() {
-    for (name, scene) in scenes() {
+    for (name, scene) in scenes()
+        .into_iter()
+        .chain(mapped_scenes().into_iter().step_by(3))
+    {
         for language in [Language::Wgsl, Language::Glsl, Language::Hlsl] {
             for entry in [Entry::Function, Entry::Image] {
                 // What is translated is validated before.
@@ -203,9 +301,13 @@ fn what_has_no_closed_form_is_refused_and_nothing_is_written() {
     let head = "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n";
     let cases = [
         ("", "no source that glows"),
-        ("[[torus]]\nmajor_radius = 1\n", "[[torus]]"),
+        ("[[torus]]\nmajor_radius = 1\nsweep = [0, 90]\n", "[[path]]"),
+        (
+            "[[curve]]\ncontrol_points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\nintensity = [1, 2, 1]\n",
+            "light that changes along",
+        ),
         ("[[path]]\npoints = [[0, 0, 0], [1, 0, 0]]\n", "[[path]]"),
-        ("[[sphere]]\nreach = 1\n", "reach has no closed form"),
+        ("[[sphere]]\nreach = 1\n", "reach has no form"),
         (
             "[[sphere]]\nprofile = \"inverse-cube\"\n",
             "a profile beside",
