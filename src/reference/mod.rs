@@ -25,6 +25,7 @@ pub use irradiance::irradiance;
 pub(crate) use mesh::see_meshes;
 #[doc(hidden)]
 pub use mesh::{MeshRay, mesh_rays};
+pub(crate) use particles::particle_light;
 #[doc(hidden)]
 pub use quadrature::integrate;
 pub(crate) use surface::see_surfaces;
@@ -67,6 +68,14 @@ pub struct Integrand {
 }
 
 impl Integrand {
+    fn of(scene: &Scene) -> Self {
+        Self {
+            decay: scene.decay,
+            absorption: scene.absorption,
+            softening: scene.integration.softening,
+        }
+    }
+
     /// Returns `psi(L(s)) zeta(s)` for one source of emission 1.
     pub fn at(&self, source: &Source, ray: &Ray, s: f64) -> f64 {
         self.field(source, ray, s) * self.fading(ray, s)
@@ -294,11 +303,7 @@ pub(crate) struct Tracer {
 
 impl Tracer {
     pub(crate) fn new(scene: &Scene, method: Method) -> Self {
-        let integrand = Integrand {
-            decay: scene.decay,
-            absorption: scene.absorption,
-            softening: scene.integration.softening,
-        };
+        let integrand = Integrand::of(scene);
         Self {
             sources: sources(scene),
             particles: Particles::new(scene, integrand),

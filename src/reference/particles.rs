@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::quadrature::integrate;
 use super::{Integrand, RELATIVE_ERROR};
 use crate::scene::{LightElement, MetaballKernel, Ray, Scene};
+use crate::threads;
 
 /// Samples of the stretch of a ray next to an element, in which changes from dark to light are sought.
 const SAMPLES: u32 = 64;
@@ -167,4 +168,16 @@ impl Particles {
         let of = |body: &Body| body.light * body.integral(ray, end, &self.integrand);
         self.bodies.iter().map(of).sum()
     }
+}
+
+/// Returns the linear RGB that the particles of a scene without waves give to whole rays, in the scene's measure.
+pub(crate) fn particle_light(scene: &Scene, rays: &[Ray]) -> Vec<DVec3> {
+    let particles = Particles::new(scene, Integrand::of(scene));
+    let mut lights = vec![DVec3::ZERO; rays.len()];
+    threads::for_each_chunk(&mut lights, 1, |index, light| {
+        let ray = &rays[index];
+        let scale = scene.integration.scale(ray.span.length());
+        light.fill(particles.light(ray, 1.0) * scale);
+    });
+    lights
 }

@@ -63,14 +63,10 @@ impl Scene {
 
     /// Refuses what is seen in pictures only.
     pub(super) fn check_rays_alone(&self) -> Result<()> {
-        if !self.volumes.is_empty() {
-            let message = "volumes are seen in pictures only; integrate along rays without them";
-            return Err(Error::Unsupported(message.to_owned()));
-        }
-        if !self.has_particles() {
+        if self.volumes.is_empty() {
             return Ok(());
         }
-        let message = "particles are seen in pictures only; integrate along rays without them";
+        let message = "volumes are seen in pictures only; integrate along rays without them";
         Err(Error::Unsupported(message.to_owned()))
     }
 
@@ -89,7 +85,8 @@ impl Renderer {
         Ok(with_meshes(given).or(simulated))
     }
 
-    fn simulated_waves(&mut self, scene: &Scene) -> Result<Option<Scene>> {
+    /// Returns a scene with the light of its waves at its moment in their place; `None`: it has none.
+    pub(super) fn simulated_waves(&mut self, scene: &Scene) -> Result<Option<Scene>> {
         if scene.waves.is_empty() {
             return Ok(None);
         }

@@ -5,6 +5,7 @@
 //! `naga` translates it. A text has only the kinds that its scene has, each in an array of a fixed length, one entry a
 //! light. Time enters by the block: a host writes [`Shader::uniforms`] of the scene as it is at a time.
 
+mod curves;
 mod lines;
 mod points;
 #[cfg(feature = "shaders")]
@@ -165,7 +166,7 @@ impl Block {
         };
         add_kinds(&mut block, &sources, softening2)?;
         if block.kinds.is_empty() {
-            let message = "the scene has no source that glows: give it one, such as [[sphere]]";
+            let message = "the scene has no source that glows: give it one";
             return Err(Error::Unsupported(message.to_owned()));
         }
         let bytes = size_of::<Row>() * block.rows.len();

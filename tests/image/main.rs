@@ -33,6 +33,7 @@ mod laws; // checks what every image obeys: linearity, order, mirror, motion, sc
 mod layers; // holds several lights of one core to as many sources
 mod meshes; // compares meshes with float64, and with what hides and is hidden
 mod metaballs; // holds surfaces to float64 by another method
+mod particle_rays; // gives single rays the light of particles that their pixels show
 mod particle_views; // sees particles through every camera, blurred, and with a bloom
 mod particles; // holds balls and streaks of light to float64
 mod parts; // draws rows, rays and changed scenes as the whole image has them

@@ -290,7 +290,7 @@ fn particles_add_to_the_wave_and_what_is_behind_the_rays_is_dark() {
 }
 
 /// A wave that hits a box, at a frame.
-fn splash(frame: f64) -> Scene {
+pub fn splash(frame: f64) -> Scene {
     let mut scene = Scene::new(Camera::new(
         DVec3::new(-120.0, -95.0, 50.0),
         -12.0 * DVec3::X,
