@@ -256,6 +256,7 @@ pub(crate) fn check_cells(cells: [u32; 3]) -> std::result::Result<(), String> {
 }
 
 /// Refuses a texture for which there is no memory, before it is read; `channels` of it are kept at a time.
+#[cfg(feature = "files")]
 pub(crate) fn check_room(cells: [u32; 3], channels: u64) -> Result<()> {
     let bytes = 4 * channels * cells.map(u64::from).iter().product::<u64>();
     let [x, y, z] = cells;

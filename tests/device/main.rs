@@ -12,5 +12,5 @@ mod film; // lets a second engine add its light to the wave's
 mod hidden; // sends rays through edges and corners of a closed mesh
 mod layout; // finds every field of every device struct by its name
 mod sanitizer; // runs every kernel on every lane width, small enough for a simulator
-mod several_devices;
-mod splits; // cuts a frame into launches in every way // draws one frame on several devices
+mod several_devices; // draws one frame on several devices
+mod splits; // cuts a frame into launches in every way
