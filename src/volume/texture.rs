@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::LightBall;
 use crate::error::{Error, Result};
+#[cfg(feature = "files")]
 use crate::memory;
 
 /// Most cells along an edge.
