@@ -6,7 +6,7 @@ use energywave::TextFile;
 use energywave::shader::{Entry, Language, export};
 
 use super::subcommands::{EntryName, ExportArguments, LanguageName};
-use super::{Outcome, note, open_scene, print, shown};
+use super::{Outcome, note, open_scene, print, shown, warn};
 
 pub fn run(arguments: &ExportArguments) -> Outcome {
     let (scene, _) = open_scene(&arguments.scene)?
@@ -20,14 +20,23 @@ pub fn run(arguments: &ExportArguments) -> Outcome {
         EntryName::Function => Entry::Function,
         EntryName::Image => Entry::Image,
     };
+    let uniforms = arguments.uniforms.as_ref().map(TextFile::create);
+    let uniforms = uniforms.transpose()?;
+    let text = match arguments.output == Path::new("-") {
+        true => None,
+        false => Some(TextFile::create(&arguments.output)?),
+    };
     let shader = export(&scene, language, entry)?;
-    if let Some(path) = &arguments.uniforms {
-        TextFile::create(path)?.write_bytes(&shader.uniforms(&scene)?)?;
+    if scene.depth.is_some() {
+        warn("the shader has no depths: whoever calls it gives the depth at which a ray ends");
     }
-    if arguments.output == Path::new("-") {
+    if let Some(file) = uniforms {
+        file.write_bytes(&shader.uniforms(&scene)?)?;
+    }
+    let Some(text) = text else {
         return print(&shader.text);
-    }
-    TextFile::create(&arguments.output)?.write(&shader.text)?;
+    };
+    text.write(&shader.text)?;
     let file = shown(&arguments.output.to_string_lossy());
     note(&format!(
         "wrote {file}: {} lines",

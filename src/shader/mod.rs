@@ -325,6 +325,7 @@ fn refuse(scene: &Scene) -> Result<()> {
             scene.particles.len() + scene.light_elements.len(),
         ),
         ("[[wave]]", scene.waves.len()),
+        ("[[volume]]", scene.volumes.len()),
     ];
     if let Some((name, _)) = surfaces.iter().find(|(_, count)| *count > 0) {
         return Err(no_form(name));

@@ -312,6 +312,7 @@ fn what_has_no_closed_form_is_refused_and_nothing_is_written() {
             "[[sphere]]\nprofile = \"inverse-cube\"\n",
             "a profile beside",
         ),
+        ("[[volume]]\nlight_ball = {}\n", "[[volume]] has no form"),
         ("[absorption]\nkappa = 1\n[[sphere]]\n", "[absorption]"),
         (
             "[decay]\nalpha = 1\nbeta = 1\npower = 3\n[[sphere]]\n",

@@ -7,8 +7,8 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, SceneError};
-use crate::scene::colors::read_color;
-use crate::scene::values::{read_some_vector, read_vector, read_vectors};
+use crate::scene::colors::{read_color, read_some_colors};
+use crate::scene::values::{read_some_vector, read_vector};
 use crate::scene::{Volume, VolumeInterpolation};
 use crate::volume::{LightBall, Texture, TextureOrigin};
 
@@ -50,8 +50,8 @@ pub(super) struct VolumeTable {
 struct BallTable {
     #[serde(deserialize_with = "read_vector")]
     radii: DVec3,
-    #[serde(deserialize_with = "read_vectors")]
-    colors: Vec<DVec3>,
+    #[serde(deserialize_with = "read_some_colors")]
+    colors: Option<Vec<DVec3>>,
     #[serde(deserialize_with = "read_vector")]
     alphas: DVec3,
     cells: u32,
@@ -106,7 +106,7 @@ impl BallTable {
     fn of(ball: &LightBall) -> Self {
         Self {
             radii: ball.radii.into(),
-            colors: ball.colors.to_vec(),
+            colors: Some(ball.colors.to_vec()),
             alphas: ball.alphas.into(),
             cells: ball.cells,
         }
@@ -115,11 +115,10 @@ impl BallTable {
     fn texture(&self) -> Result<Texture> {
         let fault =
             |key: &str, message: String| SceneError::value(format!("light_ball.{key}"), message);
-        let Ok(colors) = self.colors.clone().try_into() else {
-            let message = format!(
-                "{} colours; each of three shells has one",
-                self.colors.len()
-            );
+        let colors = self.colors.clone().unwrap_or_default();
+        let count = colors.len();
+        let Ok(colors) = colors.try_into() else {
+            let message = format!("{count} colours; each of three shells has one");
             return Err(fault("colors", message).into());
         };
         let ball = LightBall {
