@@ -12,7 +12,7 @@ const SMALL: [&str; 4] = ["--size", "24x16", "--device", "reference"];
 fn render_says_in_a_line_what_it_drew() {
     let folder = Folder::new();
     let output = folder.render("out.exr", &SMALL);
-    expect(&output, 0, "reference, built in");
+    expect(&output, 0, "reference (built in");
     let said = stderr(&output);
     let line = said.lines().last().unwrap();
     let image = energywave::RadianceImage::open(folder.path().join("out.exr")).unwrap();
