@@ -268,6 +268,49 @@ fn images_by_pixels_and_by_tiles_meet_the_tolerance() {
     }
 }
 
+/// Flat zigzags, each much smaller than a ray is long and dark a little beside it: where two pieces are equally near,
+/// the next float32 of a ray's parameter is past the place.
+fn zigzags() -> Scene {
+    let mut rng = Rng::with_seed(6);
+    let mut between = |from: f64, to: f64| from + (to - from) * rng.f64();
+    let mut scene = common::empty_scene(64, 64);
+    scene.camera.eye = DVec3::new(0.0, -5.0, 3.5);
+    scene.camera.target = DVec3::ZERO;
+    scene.camera.ray_length = Some(12.0);
+    for _ in 0..10 {
+        let center = DVec3::new(between(-1.5, 1.5), between(-1.5, 1.5), 0.0);
+        let points =
+            (0..8).map(|_| center + DVec3::new(between(-0.4, 0.4), between(-0.4, 0.4), 0.0));
+        scene.paths.push(LightPath {
+            radius: 0.01,
+            reach: Some(0.1),
+            ..LightPath::new(points.collect())
+        });
+    }
+    scene
+}
+
+#[test]
+fn equally_near_pieces_do_not_hold_a_ray_up_and_it_would_lose_light_where_they_did() {
+    let mut scene = zigzags();
+    scene.integration.method = Method::exact(1e-5);
+    let scene = sampled(&scene, Sampling::Pixels);
+    let truth = reference::render(&scene).unwrap();
+    let most = truth.as_slice().iter().copied().fold(0.0, f32::max);
+    let lost = |options: &str| {
+        let image = renderer(common::device().lanes, options)
+            .render(&scene)
+            .unwrap();
+        let pairs = image.as_slice().iter().zip(truth.as_slice());
+        pairs
+            .filter(|(value, truth)| (*value - *truth).abs() > 2e-5 * truth.max(1e-3 * most))
+            .count()
+    };
+    let (own, standing) = (lost(""), lost("-DNEXT_FLOAT=0.0f"));
+    assert_eq!(own, 0);
+    assert!(standing > 4, "standing still lost {standing} values only");
+}
+
 #[test]
 fn a_path_of_one_piece_is_a_segment_or_a_curve_and_joints_in_a_straight_line_do_not_show() {
     let mut renderer = renderer(common::device().lanes, "");

@@ -169,7 +169,8 @@ PER_RAY_IF_WIDE floatv path_integral(const Ray *const ray, const Sources *const 
         const path_view view = path_view_of(rows, ray, &spot, &place);
         const floatv most = path_far_step(&view.distance2, beyond);
         const path_place next = path_next(rows, &groups, ray, &spot, &place, &view, most);
-        floatv to = select(s + next.x, end, (next.x >= beyond) | (intv)(left == 1u ? -1 : 0));
+        const floatv ahead = min(s + max(next.x, path_least_step(s)), end);
+        floatv to = select(ahead, end, (next.x >= beyond) | (intv)(left == 1u ? -1 : 0));
 #ifdef SERIES
         const floatv whole = to;
         if (left > 1u)

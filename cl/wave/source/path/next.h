@@ -46,6 +46,15 @@ INLINE floatv path_far_step(const Parabola *const part, const floatv beyond) {
     return select(beyond, min(beyond, 0.875f * closest), is_far);
 }
 
+// Returns how far a step goes at least: to the next float32. A ray that stands still sees equally near parts take turns
+// until it has no steps left.
+#ifndef NEXT_FLOAT // a test lets it stand still
+#define NEXT_FLOAT 1.2e-7f
+#endif
+floatv path_least_step(const floatv s) {
+    return NEXT_FLOAT * max(s, 0.01f);
+}
+
 // Another part takes over where its squared distance is less by this share: parts that are all but equally near do not
 // take turns. Far from a path, short pieces then are points.
 #ifndef PATH_SLACK
