@@ -34,6 +34,8 @@
 #endif
 #define QUARTERED_FROM (4.0f * HALVED_FROM)
 #define BEND_DOUBT 0.5f
+// From so much of that on the cuts count, at first little.
+#define PASSES_FROM 0.75f
 // So little of the way to a line lies along it by rounding: a ray that meets a core is led away from it, not along it.
 #ifndef ALONG_ROUNDED // a test spoils it
 #define ALONG_ROUNDED 1e-2f
@@ -279,7 +281,8 @@ INLINE Square part_of_pixel(const uint number, const uint cuts) {
     return part;
 }
 
-// Returns where a pixel is cut into 2 squares a side, and no more.
-INLINE intv is_halved(const floatv doubt) {
-    return (doubt > HALVED_FROM) & (doubt <= QUARTERED_FROM);
+// Returns how much of a pixel's light is that of its cuts, which do from such a doubt on: one way of seeing a pixel
+// passes into the other, so that it does not pop where its doubt grows.
+INLINE floatv share_of_cuts(const floatv doubt, const float from) {
+    return clamp((doubt - PASSES_FROM * from) * (1.0f / ((1.0f - PASSES_FROM) * from)), 0.0f, 1.0f);
 }

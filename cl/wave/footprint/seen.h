@@ -43,20 +43,24 @@ INLINE SquareLight KIND_through(const View *const view, const Ray *const ray, co
 
 PER_RAY floatv KIND_seen(const View *const view, const Ray *const ray, const Sources *const sources, const uint index,
                          const Quadrature *const quadrature) {
-    floatv light = splat(0.0f), doubt = splat(0.0f);
+    floatv light = splat(0.0f), halved = splat(0.0f), quartered = splat(0.0f);
     // The pixel as it is, then where it is in doubt by 2 and by 4 squares a side: in every lane by its own.
     for (uint cuts = 1; cuts <= 4; cuts *= 2) {
-        const intv is_cut = cuts == 1 ? (intv)(-1) : cuts == 2 ? is_halved(doubt) : doubt > QUARTERED_FROM;
+        const floatv share = cuts == 1 ? splat(1.0f) : cuts == 2 ? halved : quartered;
+        const intv is_cut = (share > 0.0f) & ((cuts == 2 ? quartered : splat(0.0f)) < 1.0f);
         if (!any_lane(is_cut))
             continue;
         floatv sum = splat(0.0f);
         for (uint k = 0; k < cuts * cuts; ++k) {
             const Square square = part_of_pixel(k, cuts);
             const SquareLight seen = KIND_through(view, ray, &square, sources, index, quadrature);
-            doubt = cuts == 1 ? seen.doubt : doubt;
             sum += seen.light;
+            if (cuts == 1) {
+                halved = share_of_cuts(seen.doubt, HALVED_FROM);
+                quartered = share_of_cuts(seen.doubt, QUARTERED_FROM);
+            }
         }
-        light = select(light, sum * (1.0f / (float)(cuts * cuts)), is_cut);
+        light = select(light, fma(share, sum * (1.0f / (float)(cuts * cuts)) - light, light), is_cut);
     }
     return light;
 }
