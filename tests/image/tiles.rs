@@ -6,7 +6,7 @@ use crate::common::random::random_scene;
 use crate::common::tile_scenes::{hard_scenes, usual_view};
 use crate::common::{at_tolerance, difference, lane_widths, meets, renderer, sampled};
 use energywave::image::ImageSize;
-use energywave::scene::{Method, Sampling};
+use energywave::scene::{Method, Profile, Sampling, Torus};
 use energywave::{Renderer, Scene, reference};
 use glam::DVec3;
 
@@ -238,4 +238,47 @@ fn a_source_costs_as_much_among_many_as_alone() {
     );
     assert!(many < 1.2 * few, "{few} and {many}");
     assert!(many < 0.1 * 65536.0, "{many} of 65536");
+}
+
+/// A ring whose light ends, seen all but edge-on, from cameras that turn a little.
+fn rings_with_an_end() -> impl Iterator<Item = Scene> {
+    (0..4).map(|turn| {
+        let mut scene = common::empty_scene(960, 540);
+        scene.integration.method = Method::exact(1e-3);
+        scene.decay = None;
+        scene.camera.eye = DVec3::new(0.0, -6.0, 1.4);
+        scene.camera.target = DVec3::new(0.7 + 0.009 * f64::from(turn), 0.0, 0.1);
+        scene.camera.ray_length = Some(16.0);
+        scene.tori.push(Torus {
+            center: DVec3::new(-0.55, -0.18, 0.06),
+            axis: DVec3::new(5.2, -0.9, 0.3),
+            profile: Profile::InverseSquare,
+            radius: 0.018,
+            reach: Some(0.4),
+            ..Torus::new(0.85)
+        });
+        scene
+    })
+}
+
+#[test]
+fn a_tile_that_a_rings_light_only_touches_has_it_and_hasty_steps_to_the_ring_lose_it() {
+    let lost = |options: &str| {
+        let mut renderer = renderer(common::device().lanes, options);
+        let mut draw =
+            |scene: &Scene, sampling| renderer.render(&sampled(scene, sampling)).unwrap();
+        let lost = rings_with_an_end().map(|scene| {
+            let tiles = draw(&scene, Sampling::Tiles);
+            let pixels = draw(&scene, Sampling::Pixels);
+            let brightest = pixels.as_slice().iter().copied().fold(0.0, f32::max);
+            let pairs = tiles.as_slice().iter().zip(pixels.as_slice());
+            let is_lost =
+                |(tile, pixel): &(&f32, &f32)| **tile == 0.0 && **pixel > 1e-6 * brightest;
+            pairs.filter(is_lost).count()
+        });
+        lost.sum::<usize>()
+    };
+    let (own, hasty) = (lost(""), lost("-DTORUS_BENDS=0.0f"));
+    assert_eq!(own, 0);
+    assert!(hasty > 20, "hasty steps lost {hasty} values only");
 }

@@ -60,16 +60,23 @@ floatv torus_field(const torus_path *const path, const floatv s) {
 }
 
 #ifdef SHAPES
-// Returns the squared distance at s, without softening, its slope there, and the square of how fast the way to the ring
-// changes.
-INLINE floatv torus_offset2(const torus_path *const path, const floatv s, floatv *const slope, floatv *const speed2) {
+#ifndef TORUS_BENDS // a test spoils it
+#define TORUS_BENDS 1.0f
+#endif
+
+// Returns the squared distance at s, without softening, its slope there, and half of its curvature, or more: of a ring
+// that the ray is within, as if the way to it did not bend.
+INLINE floatv torus_offset2(const torus_path *const path, const floatv s, floatv *const slope,
+                            floatv *const half_curvature) {
     const floatv across = fma(path->rho2.slope, s, path->rho2.offset);
     const floatv rho = twice_sqrt(fma(across, across, path->rho2.least));
     const floatv height = fma(path->height_slope, s, path->height);
     const floatv from_ring = rho - path->major_radius;
-    const floatv rho_slope = 4.0f * across * path->rho2.slope * inverse(rho);
+    const floatv per_rho = inverse(rho), rho_slope = 4.0f * across * path->rho2.slope * per_rho;
+    const floatv bent = 4.0f * path->rho2.slope * per_rho, rho_curvature = bent * bent * path->rho2.least * per_rho;
     *slope = 2.0f * fma(from_ring, rho_slope, height * path->height_slope);
-    *speed2 = fma(rho_slope, rho_slope, path->height_slope * path->height_slope);
+    *half_curvature = fma(rho_slope, rho_slope, path->height_slope * path->height_slope) +
+                      TORUS_BENDS * max(from_ring, 0.0f) * rho_curvature;
     return fma(from_ring, from_ring, height * height);
 }
 #endif
@@ -124,8 +131,8 @@ INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const 
 
 #ifdef SHAPES
 INLINE floatv torus_edge_distance2(const torus_peaks *const peaks, const floatv s, floatv *const slope) {
-    floatv speed2;
-    return torus_offset2(&peaks->path, s, slope, &speed2);
+    floatv half_curvature;
+    return torus_offset2(&peaks->path, s, slope, &half_curvature);
 }
 #endif
 
@@ -310,15 +317,15 @@ INLINE floatv torus_near_field(const torus_near *const near, const floatv x) {
 }
 
 #ifdef SHAPES
-// Finds where the ray comes closest to the ring, which far from it is not where it peaks, by Gauss-Newton steps, and
-// returns the squared distance there.
+// Finds where the ray comes closest to the ring, which far from it is not where it peaks, by Newton steps, and returns
+// the squared distance there.
 INLINE floatv torus_least_offset2(const torus_peaks *const peaks, floatv *const s) {
-    floatv slope, speed2;
+    floatv slope, half_curvature;
     for (int step = 0; step < 4; ++step) {
-        torus_offset2(&peaks->path, *s, &slope, &speed2);
-        *s = clamp(fma(-0.5f * slope, inverse(max(speed2, 1e-30f)), *s), 0.0f, peaks->ray->end);
+        torus_offset2(&peaks->path, *s, &slope, &half_curvature);
+        *s = clamp(fma(-0.5f * slope, inverse(max(half_curvature, 1e-30f)), *s), 0.0f, peaks->ray->end);
     }
-    return torus_offset2(&peaks->path, *s, &slope, &speed2);
+    return torus_offset2(&peaks->path, *s, &slope, &half_curvature);
 }
 #endif
 
