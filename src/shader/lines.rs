@@ -7,13 +7,13 @@ use crate::wave::pack::{beam, cylinder, segment};
 macro_rules! exported {
     ($Type:ty, $file:literal, |$source:ident| $rows:expr) => {
         impl Exported for $Type {
-            const TEXT: Option<&'static str> = Some(include_str!(concat!("../../wgsl/", $file)));
+            const TEXT: &'static [&'static str] = &[include_str!(concat!("../../wgsl/", $file))];
 
             fn falloff(&self) -> Falloff {
                 self.falloff
             }
 
-            fn rows(&self) -> Vec<Row> {
+            fn rows(&self, _: f32) -> Vec<Row> {
                 let $source = self;
                 $rows
             }

@@ -4,7 +4,8 @@ use naga::back::{glsl, hlsl};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 
-use super::{Entry, LICENCE, Language};
+use super::text::LICENCE;
+use super::{Entry, Language};
 use crate::error::{Error, Result};
 
 /// A stage that makes GLSL write all functions, where the text has none.
