@@ -3,8 +3,10 @@
 
 use glam::DVec3;
 
+use super::UniformField;
 use super::refuse::{no_form, refuse};
-use crate::error::{Error, Result};
+use crate::error::{Result, SceneError};
+use crate::image::Exposure;
 use crate::scene::Scene;
 use crate::scene::kinds::for_each_kind;
 use crate::wave::pack::layout::Falloff;
@@ -23,6 +25,9 @@ pub(super) trait Exported {
 
     /// The same where a scene has light that changes along a core.
     const TEXT_WITH_SERIES: &'static [&'static str] = Self::TEXT;
+
+    /// What the rows of its struct are called, but for its light.
+    const ROW_NAMES: &'static [&'static str];
 
     /// Whether it is integrated by nodes.
     const IS_MAPPED: bool = false;
@@ -48,11 +53,15 @@ pub(super) struct Block {
     pub(super) series: Vec<Row>,
     pub(super) is_shaped: bool,
     pub(super) kinds: Vec<Kind>,
+    /// What light is multiplied with before it is tone-mapped.
+    pub(super) gain: f32,
 }
 
 pub(super) struct Kind {
     pub(super) name: &'static str,
+    pub(super) list_name: &'static str,
     pub(super) type_name: &'static str,
+    pub(super) row_names: &'static [&'static str],
     pub(super) texts: [&'static [&'static str]; 2],
     pub(super) is_mapped: bool,
     pub(super) count: usize,
@@ -63,7 +72,10 @@ macro_rules! add_kinds {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         /// Adds all sources; fails where one has no closed form.
         fn add_kinds(block: &mut Block, sources: &Sources, softening2: f32) -> Result<()> {
-            $(block.add(stringify!($kind), stringify!($Type), &sources.$list, &sources.rows.list, softening2)?;)*
+            $(
+                let names = [stringify!($kind), stringify!($list), stringify!($Type)];
+                block.add(names, &sources.$list, &sources.rows.list, softening2)?;
+            )*
             Ok(())
         }
     };
@@ -83,11 +95,12 @@ impl Block {
             series: Vec::new(),
             is_shaped: false,
             kinds: Vec::new(),
+            gain: gain(scene),
         };
         add_kinds(&mut block, &sources, softening2)?;
         if block.kinds.is_empty() {
             let message = "the scene has no source that glows: give it one";
-            return Err(Error::Unsupported(message.to_owned()));
+            return Err(SceneError::value("", message).into());
         }
         let bytes = size_of::<Row>() * (block.rows.len() + block.series.len());
         if bytes > MOST_BYTES {
@@ -95,7 +108,7 @@ impl Block {
                 "the lights of the scene take {bytes} bytes of a uniform block, which has {MOST_BYTES}: \
                  export fewer sources, or fewer layers, at a time"
             );
-            return Err(Error::Unsupported(message));
+            return Err(SceneError::value("", message).into());
         }
         Ok(block)
     }
@@ -105,10 +118,26 @@ impl Block {
         of_kinds.chain([self.series.len()]).collect()
     }
 
+    /// Returns the fields of the block, each of four numbers.
+    pub(super) fn fields(&self) -> Vec<UniformField> {
+        let mut names: Vec<String> = HEAD_NAMES.map(str::to_owned).to_vec();
+        for kind in &self.kinds {
+            let of_light = ["light.color", "light.core"];
+            let rows = || kind.row_names.iter().chain(&of_light);
+            let of = |index| rows().map(move |row| format!("{}[{index}].{row}", kind.list_name));
+            names.extend((0..kind.count).flat_map(of));
+        }
+        names.extend((0..self.series.len()).map(|index| format!("series[{index}]")));
+        let offsets = (0..).step_by(size_of::<Row>());
+        let fields = names.into_iter().zip(offsets);
+        fields
+            .map(|(name, offset)| UniformField { name, offset })
+            .collect()
+    }
+
     fn add<Device: Exported>(
         &mut self,
-        name: &'static str,
-        type_name: &'static str,
+        [name, list_name, type_name]: [&'static str; 3],
         list: &[Device],
         packed: &[Row],
         softening2: f32,
@@ -117,11 +146,13 @@ impl Block {
             return Ok(());
         }
         if Device::TEXT.is_empty() {
-            return Err(no_form(&format!("[[{name}]]")));
+            return Err(no_form(format!("{name}[0]"), "this kind"));
         }
         self.kinds.push(Kind {
             name,
+            list_name,
             type_name,
+            row_names: Device::ROW_NAMES,
             texts: [Device::TEXT, Device::TEXT_WITH_SERIES],
             is_mapped: Device::IS_MAPPED,
             count: list.len(),
@@ -170,6 +201,17 @@ fn light([red, green, blue, _]: Row, falloff: Falloff, softening2: f32) -> [Row;
         ],
     ]
 }
+
+/// Returns 2 to the power of the exposure; what fits a picture is known only when there is one.
+fn gain(scene: &Scene) -> f32 {
+    match scene.display.exposure {
+        Exposure::Stops(stops) => stops.exp2() as f32,
+        Exposure::Auto => 1.0,
+    }
+}
+
+/// What the rows of the head are called.
+pub(super) const HEAD_NAMES: [&str; 6] = ["rays", "eye", "corner", "across", "down", "forward"];
 
 /// Returns what the block begins with.
 fn head(scene: &Scene, length: f64) -> Vec<Row> {

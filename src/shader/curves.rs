@@ -10,6 +10,7 @@ impl Exported for curve::Curve {
     const TEXT: &'static [&'static str] = &[CURVE, include_str!("../../wgsl/curve_even.wgsl")];
     const TEXT_WITH_SERIES: &'static [&'static str] =
         &[CURVE, include_str!("../../wgsl/curve_series.wgsl")];
+    const ROW_NAMES: &'static [&'static str] = &["middle", "velocity", "second"];
     const IS_MAPPED: bool = true;
 
     fn falloff(&self) -> Falloff {
@@ -38,6 +39,7 @@ impl Exported for curve::Curve {
 
 impl Exported for LightPath {
     const TEXT: &'static [&'static str] = &[];
+    const ROW_NAMES: &'static [&'static str] = &[];
 
     fn falloff(&self) -> Falloff {
         self.falloff

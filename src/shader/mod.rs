@@ -6,6 +6,8 @@
 //! light. Time enters by the block: a host writes [`Shader::uniforms`] of the scene as it is at a time.
 
 mod block;
+#[cfg(feature = "shaders")]
+mod constants;
 mod curves;
 mod lines;
 mod points;
@@ -29,6 +31,9 @@ pub enum Language {
     Glsl,
     /// Direct3D's, shader model 5.1.
     Hlsl,
+    /// GLSL ES 3.00 for Shadertoy, to paste as it is: the values are constants, and there is always a picture, with the
+    /// scene's exposure, `1 - exp(-L)`, and the power 1/2.2 for sRGB.
+    Shadertoy,
 }
 
 /// Where a text begins.
@@ -49,6 +54,17 @@ pub struct Shader {
     /// The text.
     pub text: String,
     counts: Vec<usize>,
+    fields: Vec<UniformField>,
+}
+
+/// Four float32 of a uniform block.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct UniformField {
+    /// What the WGSL calls it, such as `beams[0].light.color`.
+    pub name: String,
+    /// Where it begins, bytes from the block's first.
+    pub offset: usize,
 }
 
 impl Shader {
@@ -56,7 +72,7 @@ impl Shader {
     /// an animated one at another time: little-endian float32, laid out as std140 has it.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] as [`export`], and where there are more or fewer lights of some kind.
+    /// Those of [`export`]; [`Error::Unsupported`] where there are more or fewer lights of some kind.
     pub fn uniforms(&self, scene: &Scene) -> Result<Vec<u8>> {
         let block = Block::of(scene)?;
         if block.counts() != self.counts {
@@ -67,18 +83,40 @@ impl Shader {
         let rows = [block.rows, block.series].concat();
         Ok(bytemuck::cast_slice(&rows).to_vec())
     }
+
+    /// Returns the same for a scene that moves, as it is at a time in seconds: what a host writes each frame.
+    ///
+    /// # Errors
+    /// Those of [`Shader::uniforms`], and of [`AnimatedScene::at`](crate::scene::AnimatedScene::at).
+    #[cfg(feature = "files")]
+    pub fn uniforms_at(&self, scene: &crate::scene::AnimatedScene, time: f64) -> Result<Vec<u8>> {
+        let (bytes, _) = scene.made_at(time, |scene| self.uniforms(scene))?;
+        Ok(bytes)
+    }
+
+    /// Returns what the block holds, in the order of its bytes.
+    #[must_use]
+    pub fn fields(&self) -> &[UniformField] {
+        &self.fields
+    }
 }
 
 /// Writes a scene as a shader.
 ///
 /// # Errors
-/// [`Error::Unsupported`] where something in it has no closed form, where nothing glows, and where this build lacks
-/// the language; [`Error::Scene`] if its values are wrong.
+/// [`Error::Scene`] by the key of what has no form, where nothing glows, and if values are wrong;
+/// [`Error::Unsupported`] where this build lacks the language.
 pub fn export(scene: &Scene, language: Language, entry: Entry) -> Result<Shader> {
     let block = Block::of(scene)?;
+    let entry = match language {
+        Language::Shadertoy => Entry::Function,
+        _ => entry,
+    };
     let wgsl = block.text(entry);
     let text = match language {
         Language::Wgsl => wgsl,
+        #[cfg(feature = "shaders")]
+        Language::Shadertoy => translate::to_shadertoy(&wgsl, &block.constant())?,
         #[cfg(feature = "shaders")]
         _ => translate::translate(&wgsl, language, entry)?,
         #[cfg(not(feature = "shaders"))]
@@ -87,6 +125,9 @@ pub fn export(scene: &Scene, language: Language, entry: Entry) -> Result<Shader>
             return Err(Error::Unsupported(message.to_owned()));
         }
     };
-    let counts = block.counts();
-    Ok(Shader { text, counts })
+    Ok(Shader {
+        text,
+        counts: block.counts(),
+        fields: block.fields(),
+    })
 }

@@ -6,6 +6,7 @@ use crate::wave::pack::{sphere, torus};
 
 impl Exported for sphere::Sphere {
     const TEXT: &'static [&'static str] = &[include_str!("../../wgsl/sphere.wgsl")];
+    const ROW_NAMES: &'static [&'static str] = &["center"];
 
     fn falloff(&self) -> Falloff {
         self.falloff
@@ -22,6 +23,7 @@ impl Exported for sphere::Sphere {
 
 impl Exported for torus::Torus {
     const TEXT: &'static [&'static str] = &[include_str!("../../wgsl/torus.wgsl")];
+    const ROW_NAMES: &'static [&'static str] = &["center", "axis"];
     const IS_MAPPED: bool = true;
 
     fn falloff(&self) -> Falloff {

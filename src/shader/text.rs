@@ -57,14 +57,14 @@ impl Block {
              \x20   /* 80 */ forward: vec4f, // where parallel rays go\n",
         );
         for Kind {
-            name,
+            list_name,
             type_name,
             count,
             first_byte,
             ..
         } in &self.kinds
         {
-            text += &format!("    /* {first_byte} */ {name}s: array<{type_name}, {count}>,\n");
+            text += &format!("    /* {first_byte} */ {list_name}: array<{type_name}, {count}>,\n");
         }
         let (first, count) = (self.rows.len(), self.series.len());
         if count > 0 {
@@ -86,10 +86,16 @@ impl Block {
              \x20   let ray = Ray(origin, direction, clamp(depth, 0.0, wave.rays.x));\n\
              \x20   var light = vec3f(0.0);\n",
         );
-        for Kind { name, count, .. } in &self.kinds {
+        for Kind {
+            name,
+            list_name,
+            count,
+            ..
+        } in &self.kinds
+        {
             text += &format!(
-                "    for (var i = 0; i < {count}; i++) {{\n        light += {name}_light(ray, wave.{name}s[i]) * \
-                 wave.{name}s[i].light.color.rgb;\n    }}\n"
+                "    for (var i = 0; i < {count}; i++) {{\n        light += {name}_light(ray, wave.{list_name}[i]) * \
+                 wave.{list_name}[i].light.color.rgb;\n    }}\n"
             );
         }
         text + "    return light;\n}\n"

@@ -7,7 +7,7 @@ use std::process::Command;
 use energywave::shader::{Entry, Language, export};
 use energywave::{RadianceImage, reference};
 
-use crate::common::program::{Folder, expect};
+use crate::common::program::Folder;
 use crate::export_scenes::{SIDE, mapped_scenes, scenes};
 
 /// What float32 without further digits, and a driver's own logarithms, are off by: of the pixel's brightest channel.
@@ -20,7 +20,7 @@ const MOST_OFF_BESIDE_BARE_CORES: f64 = 5e-4;
 const MOST_OFF_BY_NODES: f64 = 1e-2;
 
 /// Draws a text by OpenGL; `None` where there is no OpenGL.
-fn drawn(folder: &Path, text: &str, uniforms: &[u8]) -> Option<Vec<f32>> {
+pub fn drawn(folder: &Path, text: &str, uniforms: &[u8]) -> Option<Vec<f32>> {
     let files = ["shader.frag", "uniforms.bin", "image.raw"].map(|name| folder.join(name));
     fs::write(&files[0], text).unwrap();
     fs::write(&files[1], uniforms).unwrap();
@@ -159,48 +159,4 @@ fn every_language_has_every_scene_with_comments_and_short() {
             }
         }
     }
-}
-
-#[test]
-fn what_has_no_closed_form_is_refused_and_nothing_is_written() {
-    let folder = Folder::new();
-    let head = "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n";
-    let cases = [
-        ("", "no source that glows"),
-        ("[[torus]]\nmajor_radius = 1\nsweep = [0, 90]\n", "[[path]]"),
-        ("[[path]]\npoints = [[0, 0, 0], [1, 0, 0]]\n", "[[path]]"),
-        (
-            "[[sphere]]\nprofile = \"smeared\"\nradius = 1\n",
-            "\"smeared\" or",
-        ),
-        ("[[volume]]\nlight_ball = {}\n", "[[volume]] has no form"),
-        ("[absorption]\nkappa = 1\n[[sphere]]\n", "[absorption]"),
-        (
-            "[decay]\nalpha = 1\nbeta = 1\npower = 3\n[[sphere]]\n",
-            "another power",
-        ),
-    ];
-    for (scene, words) in cases {
-        fs::write(folder.path().join("scene.toml"), format!("{head}{scene}")).unwrap();
-        let output = folder.run(&["-q", "export", "scene.toml", "--to", "wgsl", "-o", "x.wgsl"]);
-        expect(&output, 2, words);
-        assert!(!folder.path().join("x.wgsl").exists());
-    }
-    let output = folder.run(&["-q", "export", "scene.toml", "--to", "metal", "-o", "x"]);
-    expect(&output, 2, "wgsl, glsl, hlsl");
-    fs::write(
-        folder.path().join("scene.toml"),
-        format!("{head}[[sphere]]\n"),
-    )
-    .unwrap();
-    let output = folder.run(&[
-        "-q",
-        "export",
-        "scene.toml",
-        "--to",
-        "wgsl",
-        "-o",
-        "none/x.wgsl",
-    ]);
-    expect(&output, 7, "none");
 }
