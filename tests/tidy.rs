@@ -78,7 +78,7 @@ const LAYERS: [(&str, &[&str]); 18] = [
     ),
     ("particle", &["scene"]),
     // The block has the values that kernels get.
-    ("shader", &["scene", "wave"]),
+    ("shader", &["image", "light", "scene", "wave"]),
     ("reference", &["image", "scene", "volume"]),
     // The self-test compares with the reference.
     ("wave", &["image", "opencl", "scene", "reference", "volume"]),

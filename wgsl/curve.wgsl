@@ -1,6 +1,11 @@
-// A quadratic curve of light, M + V t + A t^2 for t from -1/2 to 1/2: 1/q or 1/q^2 of the nearest point (Watanabe, Abe,
-// Konno 2015, eq. 8-13).
-struct Curve { middle: vec4f, velocity: vec4f, second: vec4f, light: Light }
+// A quadratic curve of light, M + V t + A t^2 for t from -1/2 to 1/2: a field of the nearest point (Watanabe, Abe, Konno
+// 2015, eq. 8-13).
+struct Curve {
+    middle: vec4f,   // last the first row of its series
+    velocity: vec4f, // last how many rows that has
+    second: vec4f,
+    light: Light,
+}
 
 // Returns both t where |w + V t + A t^2|^2 may be least. Half its slope is a cubic that rises left of its turning points,
 // and curves down there, and rises right of them, and curves up: Newton's steps from the ends never overshoot.
@@ -22,7 +27,10 @@ fn minima(w: vec3f, v: vec3f, a: vec3f) -> vec2f {
         t -= vec2f(min(cubic.x, 0.0), max(cubic.y, 0.0)) / slope;
         t = vec2f(clamp(t.x, -0.5, left), clamp(t.y, right, 0.5));
     }
-    return t;
+    // Where it does not come to rise there is but the other one.
+    let at_left = ((c3 * left + c2) * left + c1) * left + c0;
+    let at_right = ((c3 * right + c2) * right + c1) * right + c0;
+    return select(select(t, t.yy, at_left < 0.0), t.xx, at_left >= 0.0 && at_right > 0.0);
 }
 
 fn curve_at(curve: Curve, t: f32) -> vec3f {

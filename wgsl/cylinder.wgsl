@@ -1,4 +1,4 @@
-// An infinite line of light: 1/q or 1/q^2 (Watanabe, Abe, Konno 2015, eq. 3).
+// An infinite line of light (Watanabe, Abe, Konno 2015, eq. 3).
 struct Cylinder { point: vec4f, direction: vec4f, light: Light }
 
 fn cylinder_light(ray: Ray, cylinder: Cylinder) -> f32 {

@@ -10,6 +10,9 @@ const WEIGHTS = array<f32, 8>(
     0.124628971, 0.095158512, 0.062253524, 0.027152459
 );
 
+// A squared distance where light that has no reach ends.
+const ENDLESS = 1e30;
+
 // Where a ray is nearest, and the distance there.
 struct Peak { place: f32, width: f32 }
 
@@ -23,9 +26,15 @@ fn mapped(place: f32, peak: Peak) -> f32 {
     return sign(x) * log(abs(x) + sqrt(x * x + 1.0));
 }
 
-// Returns field times decay, from the squared distance to the core and the place on the ray.
-fn faded_field(distance2: f32, x: f32, light: Light) -> f32 {
-    let per_distance = inverseSqrt(max(distance2 + light.core.x, wave.rays.w));
+// Returns field times decay, from the squared distance with softening, and the place on the ray.
+fn faded_field(softened2: f32, x: f32, light: Light) -> f32 {
+    let bare2 = max(softened2 - light.core.x, 0.0);
+    let per_q = inverseSqrt(max(softened2, wave.rays.w));
+    var field = per_q * select(1.0, per_q, light.color.w > 0.0) * select(1.0, per_q, light.color.w > 1.0);
+    if (light.color.w > 2.0) {
+        field = exp(-bare2 * light.core.w);
+    }
+    let window = max(1.0 - bare2 * light.core.y, 0.0);
     let n = nearness(x);
-    return wave.rays.z * n * n * per_distance * select(1.0, per_distance, light.color.w > 0.0);
+    return wave.rays.z * n * n * field * window * window;
 }

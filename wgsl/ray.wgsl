@@ -5,8 +5,9 @@
 struct Ray { origin: vec3f, direction: vec3f, end: f32 }
 
 struct Light {
-    color: vec4f, // linear RGB times coefficient and measure; last 1 for 1/q^2, 0 for 1/q
-    core: vec4f,  // first the squared radius, and softening, of q^2 = d^2 + radius^2
+    color: vec4f, // linear RGB times coefficient and measure; last 0 for 1/q, 1 for 1/q^2, 2 for 1/q^3, 3 for a Gaussian
+    core: vec4f,  // the squared radius, and softening, of q^2 = d^2 + radius^2; 1 over the squared reach, or 0; the squared
+                  // distance where light ends; 1 over twice the squared width of a Gaussian
 }
 
 struct Quadratic { rate: f32, nearest: f32, least: f32 }

@@ -1,4 +1,4 @@
-// A finite line of light: 1/q or 1/q^2 of the nearest point. The planes through its ends cut a ray into three stretches:
+// A finite line of light: the field of its nearest point. The planes through its ends cut a ray into three stretches:
 // past one end, past the line, past the other end.
 struct Segment { first: vec4f, last: vec4f, direction: vec4f, light: Light }
 

@@ -1,4 +1,4 @@
-// A point of light: 1/q or 1/q^2 (Watanabe, Abe, Konno 2015, eq. 2).
+// A point of light (Watanabe, Abe, Konno 2015, eq. 2).
 struct Sphere { center: vec4f, light: Light }
 
 fn sphere_light(ray: Ray, sphere: Sphere) -> f32 {

@@ -64,11 +64,11 @@ pub struct ExportArguments {
     /// Where the text begins
     #[arg(long, value_enum, default_value_t = EntryName::Image)]
     pub entry: EntryName,
-    /// File for the bytes of the uniform block, little-endian float32
+    /// File for the uniform block: its bytes, little-endian float32, or (.json) name, offset and numbers of each field
     #[arg(long, value_name = "FILE")]
     pub uniforms: Option<PathBuf>,
     /// When it is in a scene that moves, seconds [default: 0]
-    #[arg(long, value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
+    #[arg(long, visible_alias = "at", value_name = "SECONDS", value_parser = time, allow_hyphen_values = true)]
     pub time: Option<f64>,
 }
 
@@ -80,6 +80,8 @@ pub enum LanguageName {
     Glsl,
     /// Direct3D's
     Hlsl,
+    /// GLSL ES to paste into Shadertoy, with its values in the text
+    Shadertoy,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

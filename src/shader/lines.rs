@@ -5,15 +5,17 @@ use crate::wave::pack::layout::Falloff;
 use crate::wave::pack::{beam, cylinder, segment};
 
 macro_rules! exported {
-    ($Type:ty, $file:literal, |$source:ident| $rows:expr) => {
+    ($Type:ty, $file:literal, $names:expr, |$source:ident| $rows:expr) => {
         impl Exported for $Type {
-            const TEXT: Option<&'static str> = Some(include_str!(concat!("../../wgsl/", $file)));
+            const TEXT: &'static [&'static str] = &[include_str!(concat!("../../wgsl/", $file))];
+
+            const ROW_NAMES: &'static [&'static str] = &$names;
 
             fn falloff(&self) -> Falloff {
                 self.falloff
             }
 
-            fn rows(&self) -> Vec<Row> {
+            fn rows(&self, _: f32) -> Vec<Row> {
                 let $source = self;
                 $rows
             }
@@ -24,17 +26,21 @@ macro_rules! exported {
         }
     };
 }
-exported!(cylinder::Cylinder, "cylinder.wgsl", |it| vec![
-    it.point,
-    it.direction
-]);
-exported!(segment::Segment, "segment.wgsl", |it| vec![
-    it.from,
-    it.to,
-    it.direction
-]);
-exported!(beam::Beam, "beam.wgsl", |it| vec![
-    it.tip,
-    it.direction,
-    it.parts()
-]);
+exported!(
+    cylinder::Cylinder,
+    "cylinder.wgsl",
+    ["point", "direction"],
+    |it| vec![it.point, it.direction]
+);
+exported!(
+    segment::Segment,
+    "segment.wgsl",
+    ["first", "last", "direction"],
+    |it| vec![it.from, it.to, it.direction]
+);
+exported!(
+    beam::Beam,
+    "beam.wgsl",
+    ["tip", "direction", "parts"],
+    |it| vec![it.tip, it.direction, it.parts()]
+);

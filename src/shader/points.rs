@@ -5,13 +5,14 @@ use crate::wave::pack::layout::Falloff;
 use crate::wave::pack::{sphere, torus};
 
 impl Exported for sphere::Sphere {
-    const TEXT: Option<&'static str> = Some(include_str!("../../wgsl/sphere.wgsl"));
+    const TEXT: &'static [&'static str] = &[include_str!("../../wgsl/sphere.wgsl")];
+    const ROW_NAMES: &'static [&'static str] = &["center"];
 
     fn falloff(&self) -> Falloff {
         self.falloff
     }
 
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self, _: f32) -> Vec<Row> {
         vec![self.center]
     }
 
@@ -21,14 +22,15 @@ impl Exported for sphere::Sphere {
 }
 
 impl Exported for torus::Torus {
-    const TEXT: Option<&'static str> = Some(include_str!("../../wgsl/torus.wgsl"));
+    const TEXT: &'static [&'static str] = &[include_str!("../../wgsl/torus.wgsl")];
+    const ROW_NAMES: &'static [&'static str] = &["center", "axis"];
     const IS_MAPPED: bool = true;
 
     fn falloff(&self) -> Falloff {
         self.falloff
     }
 
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self, _: f32) -> Vec<Row> {
         let [x, y, z, _] = self.center;
         vec![[x, y, z, self.major_radius], self.axis]
     }

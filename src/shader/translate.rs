@@ -1,11 +1,14 @@
-//! WGSL to GLSL 3.30 and HLSL 5.1 by `naga`, which drops comments: those before functions are put back.
+//! WGSL to GLSL 3.30 and ES 3.00, and HLSL 5.1, by `naga`, which drops comments: those before functions are put back.
 
 use naga::back::{glsl, hlsl};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 
-use super::{Entry, LICENCE, Language};
+use super::text::LICENCE;
+use super::{Entry, Language};
 use crate::error::{Error, Result};
+
+const MAIN_IMAGE: &str = include_str!("../../wgsl/shadertoy.glsl");
 
 /// A stage that makes GLSL write all functions, where the text has none.
 const STAGE: &str = "\n@fragment\nfn image(@location(0) uv: vec2f) -> @location(0) vec4f {\n    \
@@ -17,14 +20,10 @@ pub(super) fn translate(wgsl: &str, language: Language, entry: Entry) -> Result<
         Entry::Function => format!("{wgsl}{STAGE}"),
         Entry::Image => wgsl.to_owned(),
     };
-    let module = naga::front::wgsl::parse_str(&source).map_err(|fault| failed(&fault))?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
-    let info = validator
-        .validate(&module)
-        .map_err(|fault| failed(&fault))?;
+    let (module, info) = parsed(&source)?;
     let translated = match language {
         Language::Hlsl => to_hlsl(&module, &info)?,
-        _ => to_glsl(&module, &info)?,
+        _ => to_glsl(&module, &info, glsl::Version::Desktop(330))?,
     };
     let whole = match entry {
         Entry::Image => translated.as_str(),
@@ -33,9 +32,48 @@ pub(super) fn translate(wgsl: &str, language: Language, entry: Entry) -> Result<
     Ok(with_comments(whole, wgsl, language))
 }
 
-fn to_glsl(module: &Module, info: &ModuleInfo) -> Result<String> {
+/// Translates a text that is only a function, with the values of its block as a constant.
+pub(super) fn to_shadertoy(wgsl: &str, constant: &str) -> Result<String> {
+    let (module, info) = parsed(&format!("{wgsl}{STAGE}"))?;
+    let version = glsl::Version::Embedded {
+        version: 300,
+        is_webgl: true,
+    };
+    let text = to_glsl(&module, &info, version)?;
+    let text = without_stage(&text, Language::Shadertoy);
+    // What the stage needs, and the block.
+    let dropped = ["#version", "precision", "smooth in", "layout("];
+    let kept = text
+        .lines()
+        .skip_while(|line| line.is_empty())
+        .filter(|line| !dropped.iter().any(|begin| line.starts_with(begin)));
+    let mut whole = String::new();
+    let mut is_before_functions = true;
+    for line in kept {
+        let is_function = line.ends_with('{') && line.contains('(');
+        if is_before_functions && is_function {
+            whole += &format!("{constant}\n");
+            is_before_functions = false;
+        }
+        whole += &format!("{line}\n");
+    }
+    let whole = with_comments(&whole, wgsl, Language::Shadertoy);
+    Ok(format!("{}\n{MAIN_IMAGE}", whole.trim_end()))
+}
+
+/// Parses and validates a text.
+fn parsed(wgsl: &str) -> Result<(Module, ModuleInfo)> {
+    let module = naga::front::wgsl::parse_str(wgsl).map_err(|fault| failed(&fault))?;
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator
+        .validate(&module)
+        .map_err(|fault| failed(&fault))?;
+    Ok((module, info))
+}
+
+fn to_glsl(module: &Module, info: &ModuleInfo, version: glsl::Version) -> Result<String> {
     let options = glsl::Options {
-        version: glsl::Version::Desktop(330),
+        version,
         writer_flags: glsl::WriterFlags::empty(),
         ..Default::default()
     };
@@ -64,7 +102,27 @@ fn to_hlsl(module: &Module, info: &ModuleInfo) -> Result<String> {
     hlsl::Writer::new(&mut text, &options, &pipeline)
         .write(module, info, None)
         .map_err(|fault| failed(&fault))?;
-    Ok(text)
+    Ok(with_plain_arrays(&text))
+}
+
+/// Writes constant arrays as lists: some compilers take the functions that `naga` makes for them for recursive ones.
+fn with_plain_arrays(text: &str) -> String {
+    const MAKER: &str = "Constructarray8_float_(";
+    let mut whole = String::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        if line.starts_with("typedef float ret_Constructarray8") {
+            let _ = lines.by_ref().take_while(|line| !line.is_empty()).count();
+            continue;
+        }
+        match line.split_once(MAKER) {
+            Some((begin, values)) => {
+                whole += &format!("{begin}{{ {} }};\n", values.trim_end_matches(");"));
+            }
+            None => whole += &format!("{line}\n"),
+        }
+    }
+    whole
 }
 
 /// Cuts the stage off that made the translator write all functions.

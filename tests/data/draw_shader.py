@@ -25,8 +25,9 @@ void main() {
 }
 """
 program = context.program(vertex_shader=vertex, fragment_shader=text.read_text())
-program["WaveBlock"].binding = 0
-context.buffer(block.read_bytes()).bind_to_uniform_block(0)
+if "WaveBlock" in program:
+    program["WaveBlock"].binding = 0
+    context.buffer(block.read_bytes()).bind_to_uniform_block(0)
 target = context.simple_framebuffer(size, components=4, dtype="f4")
 target.use()
 context.vertex_array(program, []).render(moderngl.TRIANGLES, vertices=3)

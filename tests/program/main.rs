@@ -32,6 +32,8 @@ mod displays; // lays files over plates as other programs do
 mod errors; // tells errors apart by their codes, and refuses wrong options
 mod examples; // runs every example
 mod export; // draws shaders by OpenGL, beside the reference
+mod export_scenes; // scenes for that
+mod export_values; // asks for blocks, refusals and texts for other hosts
 mod figures; // draws the papers' figures
 mod groups; // has groups placed as the sources that they stand for
 #[cfg(unix)] // as cli

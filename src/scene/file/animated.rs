@@ -245,11 +245,36 @@ impl AnimatedScene {
         mut adjust: impl FnMut(&mut Scene, &MethodKeys) -> Result<()>,
     ) -> Result<(Scene, Vec<SceneError>)> {
         let (scene, groups, moment) = self.checked(time, &mut adjust)?;
-        let Document { file, motion } = &self.document;
-        let warnings = groups.warnings(&scene).into_iter();
-        let placed = warnings.map(|warning| motion.placed(warning, moment));
-        let warnings = placed.chain(motion.seam(file)).collect();
+        let warnings = self.warnings(&scene, &groups, moment);
         Ok((scene, warnings))
+    }
+
+    fn warnings(&self, scene: &Scene, groups: &Groups, moment: Moment) -> Vec<SceneError> {
+        let Document { file, motion } = &self.document;
+        let warnings = groups.warnings(scene).into_iter();
+        let placed = warnings.map(|warning| motion.placed(warning, moment));
+        placed.chain(motion.seam(file)).collect()
+    }
+
+    /// Returns what `make` makes of the scene at a time, and the scene's warnings. A fault that `make` finds by a key
+    /// of the scene, such as `sphere[3].profile`, stands where the file has it, as the scene's own faults do.
+    ///
+    /// # Errors
+    /// As [`Scene::from_file`], and those of `make`.
+    pub fn made_at<T>(
+        &self,
+        time: f64,
+        make: impl FnOnce(&Scene) -> Result<T>,
+    ) -> Result<(T, Vec<SceneError>)> {
+        let (scene, groups, moment) = self.checked(time, &mut |_, _| Ok(()))?;
+        let made = make(&scene).map_err(|error| match error {
+            Error::Scene(fault) => {
+                let named = groups.named(fault);
+                self.document.motion.placed(named, moment).into()
+            }
+            other => other,
+        })?;
+        Ok((made, self.warnings(&scene, &groups, moment)))
     }
 
     fn checked(&self, time: f64, adjust: Adjust<'_>) -> Result<(Scene, Groups, Moment)> {

@@ -94,13 +94,16 @@ impl Groups {
 
     /// Returns the warnings of the scene, whose sources have the names that they have in the file.
     pub(super) fn warnings(&self, scene: &Scene) -> Vec<SceneError> {
-        let mut warnings = scene.warnings();
-        for warning in &mut warnings {
-            if let Some(key) = self.key(warning) {
-                warning.key = key;
-            }
+        let warnings = scene.warnings().into_iter();
+        warnings.map(|warning| self.named(warning)).collect()
+    }
+
+    /// Gives a fault of a source that a group makes the name that it has in the file.
+    pub(super) fn named(&self, mut fault: SceneError) -> SceneError {
+        if let Some(key) = self.key(&fault) {
+            fault.key = key;
         }
-        warnings
+        fault
     }
 
     fn key(&self, fault: &SceneError) -> Option<String> {
