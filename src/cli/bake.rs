@@ -27,6 +27,10 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
         let file = VolumeFile::create(&path, arguments.half)?.storing(storage)?;
         files.push((scene, grid, file));
     }
+    // A series of files has one number a cell throughout, or three.
+    let mut colors = files.iter().map(|(scene, ..)| scene.one_color());
+    let first = colors.next().flatten();
+    let color = first.filter(|_| colors.all(|other| other == first));
     catch_interrupts();
     let devices = choose_devices(arguments.device.device.as_deref())?;
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
@@ -62,7 +66,7 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
             note(&format!("error: {error}"));
             notes.push(("error".to_owned(), error));
         }
-        file.write(&volume, &notes)?;
+        file.in_one_color(color).write(&volume, &notes)?;
     }
     Ok(())
 }

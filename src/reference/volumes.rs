@@ -35,7 +35,7 @@ impl Volumes {
     pub(super) fn light(&self, ray: &Ray, end: f64) -> DVec3 {
         let of = |volume: &Volume| {
             let light = [0, 1, 2].map(|channel| self.integral(volume, channel, ray, end));
-            volume.coefficient * volume.color * DVec3::from(light)
+            volume.emission() * DVec3::from(light)
         };
         self.list.iter().map(of).sum()
     }

@@ -39,6 +39,7 @@ mod lighting;
 mod list;
 mod mesh;
 mod metaballs;
+mod one_color;
 mod particles;
 mod points;
 #[cfg(feature = "files")]

@@ -61,6 +61,11 @@ impl Volume {
         }
     }
 
+    /// Returns what the light of its cells is multiplied with, linear RGB.
+    pub(crate) fn emission(&self) -> DVec3 {
+        self.coefficient * self.color * self.texture.color()
+    }
+
     /// Returns the axes of its box in the world, as columns.
     pub(crate) fn axes(&self) -> DMat3 {
         let [x, y, z] = self.rotation.to_array().map(f64::to_radians);
@@ -96,9 +101,11 @@ impl Volume {
         vector("rotation", self.rotation)?;
         finite("coefficient", self.coefficient)?;
         vector("color", self.color)?;
+        vector("file", self.texture.color())?;
         for (key, least) in [
             ("coefficient", self.coefficient),
             ("color", self.color.min_element()),
+            ("file", self.texture.color().min_element()),
         ] {
             if least < 0.0 {
                 let message = format!("{least}; volumes take no light away: 0 or more");

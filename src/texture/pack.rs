@@ -101,7 +101,7 @@ impl TextureVolume {
         let middle = 0.5 * (DVec3::from(texture.cells().map(f64::from)) - 1.0);
         let from_eye = middle - to_cells * (volume.center - plane.eye);
         let row = |axis: usize| four(to_cells.row(axis), from_eye[axis]);
-        let [red, green, blue] = (volume.coefficient * volume.color).as_vec3().to_array();
+        let [red, green, blue] = volume.emission().as_vec3().to_array();
         let (slices, step) = match method {
             VolumeMethod::Ray { step } => (0, step),
             VolumeMethod::Slices { count } => (count, 1.0),

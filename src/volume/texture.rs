@@ -83,6 +83,7 @@ pub struct Texture {
     /// All of red, then green, then blue, or one for all; x fastest, then y, then z.
     values: Arc<Vec<f32>>,
     least: f32,
+    color: DVec3,
     place: Option<[DVec3; 2]>,
     origin: TextureOrigin,
 }
@@ -93,7 +94,7 @@ impl PartialEq for Texture {
         is_same
             && (self.cells, self.channels, self.storage, self.place)
                 == (other.cells, other.channels, other.storage, other.place)
-            && self.origin == other.origin
+            && (self.color, &self.origin) == (other.color, &other.origin)
     }
 }
 
@@ -157,6 +158,7 @@ impl Texture {
             storage,
             values: Arc::new(values),
             least,
+            color: DVec3::ONE,
             place: None,
             origin: TextureOrigin::Values,
         })
@@ -196,6 +198,12 @@ impl Texture {
         &self.values
     }
 
+    /// Returns what the light of all cells is multiplied with, linear RGB.
+    #[must_use]
+    pub fn color(&self) -> DVec3 {
+        self.color
+    }
+
     /// Returns where the values come from.
     #[must_use]
     pub fn origin(&self) -> &TextureOrigin {
@@ -221,6 +229,13 @@ impl Texture {
     #[must_use]
     pub fn placed(mut self, center: DVec3, size: DVec3) -> Self {
         self.place = Some([center, size]);
+        self
+    }
+
+    /// Says what the light of all cells is multiplied with, linear RGB, 0 or more.
+    #[must_use]
+    pub fn in_color(mut self, color: DVec3) -> Self {
+        self.color = color;
         self
     }
 
