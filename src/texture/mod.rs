@@ -115,7 +115,8 @@ impl Textures {
         let make = || UploadedShared::new("the cells of a volume");
         self.values.resize_with(scene.volumes.len(), make);
         for (values, volume) in self.values.iter_mut().zip(scene.volumes.iter()) {
-            values.upload(compute, Some(volume.texture.values()))?;
+            let texture = &volume.texture;
+            values.upload_made(compute, texture.values(), || pack::strided(texture))?;
         }
         let depths = scene.depth.as_ref().map(DepthImage::shared_values);
         self.depths.upload(compute, depths)?;

@@ -165,3 +165,45 @@ fn a_volume_of_ones_gives_the_length_of_each_ray_in_its_box() {
     println!("{light} {expected}");
     assert!((f64::from(light) - expected).abs() < 1e-3 * expected);
 }
+
+#[test]
+fn grids_of_few_cells_are_read_within_their_edges() {
+    let mut renderers = [
+        Renderer::new(&common::device()).unwrap(),
+        common::renderer(1, ""),
+    ];
+    for cells in [
+        [1, 1, 1],
+        [1, 2, 3],
+        [2, 1, 4],
+        [3, 5, 1],
+        [4, 3, 2],
+        [70, 2, 3],
+    ] {
+        for interpolation in [VolumeInterpolation::Linear, VolumeInterpolation::Cubic] {
+            let count: u32 = cells.iter().product();
+            let values = (0..count).map(|it| (it * 7 % 11 + 1) as f32).collect();
+            let mut scene = scene(Storage::Emission);
+            scene.image = ImageSize {
+                width: 17,
+                height: 13,
+            };
+            let mut volume = Volume::new(Texture::new(cells, values, Storage::Emission).unwrap());
+            (volume.size, volume.interpolation) = (DVec3::new(1.6, 2.0, 1.4), interpolation);
+            scene.volumes = vec![volume].into();
+            scene.integration.volumes = VolumeMethod::Ray { step: 0.01 };
+            let expected = reference(&scene);
+            for renderer in &mut renderers {
+                let error = difference(&renderer.render(&scene).unwrap(), &expected);
+                println!("{cells:?}, {interpolation:?}: {error:.1e}");
+                assert!(error < ERROR, "{cells:?}, {interpolation:?}: {error}");
+            }
+            scene.volumes[0].rotation.x += 5.0;
+            let other = renderers[0].render(&scene).unwrap();
+            assert!(
+                difference(&other, &expected) > ERROR,
+                "a turned one is the same"
+            );
+        }
+    }
+}
