@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::LightBall;
+use super::{LightBall, Volume};
 use crate::error::{Error, Result};
-#[cfg(feature = "files")]
 use crate::memory;
 
 /// Most cells along an edge.
@@ -164,6 +163,36 @@ impl Texture {
         })
     }
 
+    /// Makes one of the cells of a volume, where they are; with the colour of all light ([`Scene::one_color`]) they
+    /// have one channel.
+    ///
+    /// [`Scene::one_color`]: crate::Scene::one_color
+    ///
+    /// # Errors
+    /// As [`Texture::new`]; [`Error::OutOfMemory`].
+    pub fn of(volume: &Volume, storage: Storage, color: Option<DVec3>) -> Result<Self> {
+        let grid = volume.grid();
+        let (cells, [low, high]) = (grid.cells(), grid.bounds());
+        let channels = match color {
+            Some(color) => color.max_position()..color.max_position() + 1,
+            None => 0..3,
+        };
+        let [columns, rows, layers] = cells;
+        check_room(cells, channels.len() as u64)?;
+        let mut values = Vec::with_capacity(channels.len() * count(cells));
+        let mut row = vec![0.0; 3 * columns as usize];
+        for channel in channels {
+            for (z, y) in (0..layers).flat_map(|z| (0..rows).map(move |y| (z, y))) {
+                volume.read_row(y, z, &mut row);
+                let of_channel = row.iter().skip(channel).step_by(3);
+                values.extend(of_channel.map(|value| storage.stored(*value)));
+            }
+        }
+        let texture = Self::new(cells, values, storage)?;
+        let placed = texture.placed(0.5 * (low + high), high - low);
+        Ok(placed.in_color(color.unwrap_or(DVec3::ONE)))
+    }
+
     /// Makes that of a light ball.
     ///
     /// # Errors
@@ -272,7 +301,6 @@ pub(crate) fn check_cells(cells: [u32; 3]) -> std::result::Result<(), String> {
 }
 
 /// Refuses a texture for which there is no memory, before it is read; `channels` of it are kept at a time.
-#[cfg(feature = "files")]
 pub(crate) fn check_room(cells: [u32; 3], channels: u64) -> Result<()> {
     let bytes = 4 * channels * cells.map(u64::from).iter().product::<u64>();
     let [x, y, z] = cells;

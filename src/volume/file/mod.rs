@@ -257,7 +257,9 @@ fn write_dense(sink: &mut dyn Sink, volume: &Volume, stored: Stored) -> io::Resu
     let [columns, rows, layers] = volume.grid().cells();
     let mut row = vec![0.0; 3 * columns as usize];
     let mut bytes = Vec::with_capacity(4 * row.len());
-    let (first, step) = stored.color.map_or((0, 1), |color| (largest(color), 3));
+    let (first, step) = stored
+        .color
+        .map_or((0, 1), |color| (color.max_position(), 3));
     for z in 0..layers {
         for y in 0..rows {
             volume.read_row(y, z, &mut row);
@@ -268,16 +270,6 @@ fn write_dense(sink: &mut dyn Sink, volume: &Volume, stored: Stored) -> io::Resu
         }
     }
     Ok(())
-}
-
-/// Returns the largest channel of a colour.
-fn largest(color: DVec3) -> usize {
-    let [red, green, blue] = color.to_array();
-    match red >= green && red >= blue {
-        true => 0,
-        false if green >= blue => 1,
-        false => 2,
-    }
 }
 
 /// Writes a point as three numbers.
