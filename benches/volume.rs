@@ -131,7 +131,8 @@ fn main() {
     let scene = ring_and_point();
     let volume = bake(&mut renderer, &scene);
     println!(
-        "| 512x512 from {CELLS}^3 cells | channels | ms | ms of each core | FPS of the cores |\n|---|---|---|---|---|"
+        "| 512x512 from {CELLS}^3 cells | channels | ms | ms of each core | FPS of the cores |\n\
+         |---|---|---|---|---|"
     );
     let only = std::env::args().skip(1).find(|it| !it.starts_with('-'));
     for (color, channels) in [(scene.one_color(), 1), (None, 3)] {

@@ -153,7 +153,8 @@ fn main() {
     }
     let only: Option<u32> = std::env::args().skip(1).find_map(|it| it.parse().ok());
     println!(
-        "\n| profile | cells hold | interpolation | cells | median | 99 % | 99.9 % | worst | rays |\n|---|---|---|---|---|---|---|---|---|"
+        "\n| profile | cells hold | interpolation | cells | median | 99 % | 99.9 % | worst | rays |\n\
+         |---|---|---|---|---|---|---|---|---|"
     );
     for cells in [64, 128, 256]
         .into_iter()
