@@ -21,8 +21,13 @@ pub(super) struct Volumes {
 
 impl Volumes {
     pub(super) fn new(scene: &Scene, integrand: Integrand) -> Self {
+        let plane = scene.view_plane();
+        let seen = scene
+            .volumes
+            .iter()
+            .map(|it| it.as_seen(&plane).into_owned());
         Self {
-            list: scene.volumes.iter().cloned().collect(),
+            list: seen.collect(),
             integrand,
         }
     }

@@ -107,6 +107,7 @@ impl TextureVolume {
         let [red, green, blue] = volume.emission().as_vec3().to_array();
         let (slices, step) = match method {
             VolumeMethod::Ray { step } => (0, step),
+            VolumeMethod::Slices { .. } if volume.is_plate() => (0, 1.0),
             VolumeMethod::Slices { count } => (count, 1.0),
         };
         Self {

@@ -2,7 +2,7 @@
 //! Sakai 2006, whose array holds R, G, B and alpha: here alpha RGB, light a unit of length).
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
@@ -85,6 +85,8 @@ pub struct Texture {
     color: DVec3,
     place: Option<[DVec3; 2]>,
     origin: TextureOrigin,
+    /// What billboards show, once it was asked for.
+    picture: Arc<OnceLock<Box<Texture>>>,
 }
 
 impl PartialEq for Texture {
@@ -160,7 +162,24 @@ impl Texture {
             color: DVec3::ONE,
             place: None,
             origin: TextureOrigin::Values,
+            picture: Arc::default(),
         })
+    }
+
+    pub(super) fn kept_picture(&self) -> &OnceLock<Box<Self>> {
+        &self.picture
+    }
+
+    /// Returns the same with other cells.
+    pub(super) fn with_values(&self, cells: [u32; 3], values: Vec<f32>, storage: Storage) -> Self {
+        Self {
+            cells,
+            storage,
+            values: Arc::new(values),
+            least: 0.0,
+            picture: Arc::default(),
+            ..self.clone()
+        }
     }
 
     /// Makes one of the cells of a volume, where they are; with the colour of all light ([`Scene::one_color`]) they

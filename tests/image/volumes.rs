@@ -3,7 +3,7 @@
 
 use energywave::glam::DVec3;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, RadianceImage};
-use energywave::scene::{Camera, Decay, Volume, VolumeInterpolation, VolumeMethod};
+use energywave::scene::{Camera, Decay, Volume, VolumeInterpolation, VolumeMethod, VolumeShape};
 use energywave::volume::{Storage, Texture};
 use energywave::{Device, ErrorKind, Renderer, RendererOptions, Scene};
 
@@ -206,4 +206,60 @@ fn grids_of_few_cells_are_read_within_their_edges() {
             );
         }
     }
+}
+
+/// Makes a beam along z, as figure 5.4 of Sakai 2006 turns it, seen from -y.
+fn turned(degrees: f64, shape: VolumeShape) -> Scene {
+    let cells = [12_u32, 12, 36];
+    let value = |index: u32| {
+        let at = [index % 12, index / 12 % 12, index / 144];
+        let [x, y, z] =
+            [0, 1, 2].map(|axis| (f64::from(at[axis]) + 0.5) / f64::from(cells[axis]) * 2.0 - 1.0);
+        ((-6.0 * (x * x + y * y)).exp() * (1.0 - z.powi(8)) * (1.0 + 0.3 * z)) as f32
+    };
+    let values = (0..12 * 12 * 36).map(value).collect();
+    let mut volume = Volume::new(Texture::new(cells, values, Storage::Emission).unwrap());
+    (volume.rotation.x, volume.shape) = (degrees, shape);
+    let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -8.0, 0.0), DVec3::ZERO));
+    scene.image = ImageSize {
+        width: 45,
+        height: 37,
+    };
+    scene.camera.fov_y = 20.0;
+    scene.volumes.push(volume);
+    scene
+}
+
+#[test]
+fn a_volume_that_is_turned_grows_brighter_and_a_billboard_does_not() {
+    let mut renderer = Renderer::new(&common::device()).unwrap();
+    let mut draw = |degrees: f64, shape| renderer.render(&turned(degrees, shape)).unwrap();
+    let brightest = |image: &RadianceImage| {
+        let lights = image.as_slice().chunks_exact(4).map(|it| it[0]);
+        lights.fold(0.0, f32::max)
+    };
+    let front = draw(0.0, VolumeShape::Volume);
+    let plate = draw(0.0, VolumeShape::Billboard);
+    let expected = reference(&turned(0.0, VolumeShape::Billboard));
+    let error = difference(&plate, &expected);
+    println!(
+        "against the reference {error:.1e}, the volume from the front {:.1e}",
+        difference(&plate, &front)
+    );
+    assert!(error < ERROR, "{error}");
+    // From the front they look alike, but for perspective.
+    assert!(difference(&plate, &front) < 0.1);
+    let mut last = brightest(&front);
+    for degrees in [-20.0, -40.0, -60.0] {
+        let volume = draw(degrees, VolumeShape::Volume);
+        assert_eq!(draw(degrees, VolumeShape::Billboard), plate, "{degrees}");
+        let gain = brightest(&volume) / brightest(&plate);
+        println!("{degrees} degrees: the volume is {gain:.2} times as bright as the billboard");
+        assert!(
+            brightest(&volume) > 1.02 * last && difference(&volume, &front) > 0.3,
+            "{degrees}: {gain}"
+        );
+        last = brightest(&volume);
+    }
+    assert!(last > 1.5 * brightest(&plate));
 }
