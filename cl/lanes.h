@@ -194,6 +194,10 @@ floatv load_lanes(__global const float *const values) {
 #define gather_lanes(values, index)                                                                                    \
     __builtin_ia32_gathersiv16sf(splat(0.0f), (const float *)(size_t)(values), index, (ushort)0xffff, 4)
 #endif
+#if __has_builtin(__builtin_ia32_gathersiv8di)
+#define gather_8_pairs(values, index)                                                                                  \
+    as_float16(__builtin_ia32_gathersiv8di((long8)(0), (const void *)(size_t)(values), index, (uchar)0xff, 4))
+#endif
 #endif
 #endif
 
@@ -210,5 +214,15 @@ floatv gather(__global const float *const values, const intv index) {
     for (uint lane = 0; lane < LANES; ++lane)
         found[lane] = values[at[lane]];
     return JOIN(vload, LANES)(0, found);
+#endif
+}
+
+// Loads two values for each lane that lie side by side: there one gather of pairs costs what one of values does.
+void gather_pairs(__global const float *const values, const intv index, floatv *const low, floatv *const high) {
+#if defined(gather_8_pairs)
+    const float16 one = gather_8_pairs(values, index.lo), other = gather_8_pairs(values, index.hi);
+    *low = (float16)(one.even, other.even), *high = (float16)(one.odd, other.odd);
+#else
+    *low = gather(values, index), *high = gather(values + 1, index);
 #endif
 }

@@ -2,6 +2,7 @@
 // Rom (1974), summed along rays. By rays the part of each in the box is divided evenly; by slices (Sakai 2006) the
 // places are those where it meets planes perpendicular to the view, at equal distances within the ball around the box.
 #include "../film.h"
+#include "../roots.h"
 #include "types.h"
 
 // Places of a piece of a ray at which the quadratic through three reciprocals is summed.
@@ -18,54 +19,98 @@ typedef struct {
     __global const float *values;
 } Cells;
 
-INLINE intv clamped(const floatv place, const uint count) {
-    return to_intv_down(clamp(place, splat(0.0f), splat((float)(count - 1u))));
+// Along an axis: the first of the cells around a place, in the grid, and what the next ones weigh.
+INLINE floatv first_of(const floatv place, const uint count, const uint around) {
+    const float last = count > around ? (float)(count - around) : 0.0f;
+    return clamp(floor(place) - (float)(around / 2u - 1u), splat(0.0f), splat(last));
+}
+
+// How far from its first cell each further one is along an axis whose cells are `stride` apart: the grid may be
+// smaller.
+INLINE uint apart(const uint number, const uint count, const uint stride) {
+    return min(number, count - 1u) * stride;
+}
+
+INLINE intv first_cell(const TextureVolume *const volume, const floatv x, const floatv y, const floatv z) {
+    const intv sheet = to_intv_down(z) * (int)volume->sheet;
+    return sheet + to_intv_down(y) * (int)volume->line + to_intv_down(x);
+}
+
+// Returns what is between a cell and the next one along x.
+INLINE floatv mix_pair(const uint columns, __global const float *const values, const intv first, const floatv fx) {
+    floatv low, high;
+    if (columns > 1u)
+        gather_pairs(values, first, &low, &high);
+    else
+        low = high = gather(values, first);
+    return fma(fx, high - low, low);
+}
+
+INLINE floatv mix_lines(const Cells *const cells, const intv first, const floatv fx, const floatv fy, const uint up) {
+    const uint columns = cells->volume->columns;
+    const floatv low = mix_pair(columns, cells->values, first, fx);
+    return fma(fy, mix_pair(columns, cells->values + up, first, fx) - low, low);
 }
 
 INLINE floatv linear_at(const Cells *const cells, const float3v place) {
     const TextureVolume *const volume = cells->volume;
-    const floatv x = floor(place.x), y = floor(place.y), z = floor(place.z);
-    const floatv fx = place.x - x, fy = place.y - y, fz = place.z - z;
-    const intv x0 = clamped(x, volume->columns), x1 = clamped(x + 1.0f, volume->columns);
-    floatv sum = splat(0.0f);
-    for (uint side = 0; side < 4u; ++side) {
-        const bool is_upper = (side & 1u) != 0u, is_farther = (side & 2u) != 0u;
-        const floatv weight = (is_upper ? fy : 1.0f - fy) * (is_farther ? fz : 1.0f - fz);
-        const intv row = clamped(is_upper ? y + 1.0f : y, volume->rows);
-        const intv layer = clamped(is_farther ? z + 1.0f : z, volume->layers);
-        const intv first = (layer * (int)volume->rows + row) * (int)volume->columns;
-        const floatv low = gather(cells->values, first + x0), high = gather(cells->values, first + x1);
-        sum = fma(weight, fma(fx, high - low, low), sum);
-    }
-    return sum;
+    const uint columns = volume->columns, rows = volume->rows, layers = volume->layers;
+    const floatv x = first_of(place.x, columns, 2u), y = first_of(place.y, rows, 2u), z = first_of(place.z, layers, 2u);
+    // Beyond the middles of the outermost cells it is theirs.
+    const floatv fx = clamp(place.x - x, splat(0.0f), splat(1.0f));
+    const floatv fy = clamp(place.y - y, splat(0.0f), splat(1.0f));
+    const floatv fz = clamp(place.z - z, splat(0.0f), splat(1.0f));
+    const intv first = first_cell(volume, x, y, z);
+    const uint up = apart(1u, rows, volume->line), on = apart(1u, layers, volume->sheet);
+    const floatv near = mix_lines(cells, first, fx, fy, up);
+    const Cells farther = {volume, cells->values + on};
+    return fma(fz, mix_lines(&farther, first, fx, fy, up) - near, near);
 }
 
-// Returns the four weights of Catmull and Rom.
-INLINE void weigh(const floatv f, floatv *const weights) {
-    const floatv f2 = f * f, f3 = f2 * f;
+// Returns the four weights of Catmull and Rom for the cells from the first on. At the grid's faces those beyond it are
+// the outermost, whose weights add.
+INLINE void weigh(const floatv place, const floatv first, const uint count, floatv *const weights) {
+    const floatv x = floor(place), f = place - x, f2 = f * f, f3 = f2 * f;
     weights[0] = -0.5f * f3 + f2 - 0.5f * f;
     weights[1] = 1.5f * f3 - 2.5f * f2 + 1.0f;
     weights[2] = -1.5f * f3 + 2.0f * f2 + 0.5f * f;
     weights[3] = 0.5f * (f3 - f2);
+    if (!any_lane((x - 1.0f != first) | (first + 3.0f > (float)(count - 1u))))
+        return;
+    floatv moved[4] = {splat(0.0f), splat(0.0f), splat(0.0f), splat(0.0f)};
+    for (int i = 0; i < 4; ++i) {
+        const floatv cell = clamp(x + (float)(i - 1), splat(0.0f), splat((float)(count - 1u))) - first;
+        for (int j = 0; j < 4; ++j)
+            moved[j] += select(splat(0.0f), weights[i], cell == (float)j);
+    }
+    for (int j = 0; j < 4; ++j)
+        weights[j] = moved[j];
 }
 
 INLINE floatv cubic_at(const Cells *const cells, const float3v place) {
     const TextureVolume *const volume = cells->volume;
-    const floatv x = floor(place.x), y = floor(place.y), z = floor(place.z);
+    const uint columns = volume->columns, rows = volume->rows, layers = volume->layers;
+    const floatv x = first_of(place.x, columns, 4u), y = first_of(place.y, rows, 4u), z = first_of(place.z, layers, 4u);
     floatv wx[4], wy[4], wz[4];
-    weigh(place.x - x, wx), weigh(place.y - y, wy), weigh(place.z - z, wz);
-    intv columns[4];
-    for (int i = 0; i < 4; ++i)
-        columns[i] = clamped(x + (float)(i - 1), volume->columns);
+    weigh(place.x, x, columns, wx), weigh(place.y, y, rows, wy), weigh(place.z, z, layers, wz);
+    const intv first = first_cell(volume, x, y, z);
     floatv sum = splat(0.0f);
-    for (int k = 0; k < 16; ++k) {
-        const intv row = clamped(y + (float)(k % 4 - 1), volume->rows);
-        const intv layer = clamped(z + (float)(k / 4 - 1), volume->layers);
-        const intv first = (layer * (int)volume->rows + row) * (int)volume->columns;
-        floatv of_row = splat(0.0f);
-        for (int i = 0; i < 4; ++i)
-            of_row = fma(wx[i], gather(cells->values, first + columns[i]), of_row);
-        sum = fma(wy[k % 4] * wz[k / 4], of_row, sum);
+    for (uint k = 0; k < 4u; ++k) {
+        floatv sheet = splat(0.0f);
+#pragma unroll
+        for (uint j = 0; j < 4u; ++j) {
+            const uint offset = apart(k, layers, volume->sheet) + apart(j, rows, volume->line);
+            __global const float *const row = cells->values + offset;
+            floatv a, b, c, d;
+            if (columns > 3u)
+                gather_pairs(row, first, &a, &b), gather_pairs(row + 2, first, &c, &d);
+            else {
+                a = gather(row, first), b = gather(row + apart(1u, columns, 1u), first);
+                c = gather(row + apart(2u, columns, 1u), first), d = splat(0.0f);
+            }
+            sheet = fma(wy[j], fma(wx[0], a, fma(wx[1], b, fma(wx[2], c, wx[3] * d))), sheet);
+        }
+        sum = fma(wz[k], sheet, sum);
     }
     return sum;
 }
@@ -78,8 +123,8 @@ INLINE floatv stored_at(const Cells *const cells, const float3v place) {
 INLINE floatv emission_of(const TextureVolume *const volume, const floatv stored) {
     if (volume->power == 0u)
         return max(stored, 0.0f);
-    const floatv inverse = max(fabs(stored), volume->floor);
-    return volume->power == 1u ? 1.0f / inverse : rsqrt(inverse);
+    const floatv reciprocal = max(fabs(stored), volume->floor);
+    return volume->power == 1u ? inverse(reciprocal) : 0.5f * twice_inverse_sqrt(reciprocal);
 }
 
 // The places of a ray that are summed: from the ray's beginning on, in world units.
@@ -93,30 +138,34 @@ INLINE float3v place_at(const Course *const course, const floatv t) {
     return fma3(course->span, t, course->origin);
 }
 
-// Returns the mean emission of a piece: that in its middle; of reciprocals that of the quadratic through three.
-INLINE floatv mean_of_piece(const Cells *const cells, const Course *const course, const floatv middle) {
-    const TextureVolume *const volume = cells->volume;
-    const floatv at = stored_at(cells, place_at(course, middle));
-    if (volume->power == 0u || volume->slices > 0u)
-        return emission_of(volume, at);
-    const floatv half_step = 0.5f * course->step;
-    const floatv before = stored_at(cells, place_at(course, middle - half_step));
-    const floatv after = stored_at(cells, place_at(course, middle + half_step));
-    const floatv slope = 0.5f * (after - before), bend = 0.5f * (after + before) - at;
+// Returns the mean emission of a piece, of the quadratic through the reciprocals at its far end, middle and near end.
+INLINE floatv mean_of_piece(const TextureVolume *const volume, const floatv far, const floatv at, const floatv near) {
+    const floatv slope = 0.5f * (near - far), bend = 0.5f * (near + far) - at;
     floatv sum = splat(0.0f);
-    for (int i = 0; i < PLACES; ++i) {
-        const float u = ((float)i + 0.5f) * (2.0f / PLACES) - 1.0f;
-        sum += emission_of(volume, fma(fma(bend, splat(u), slope), splat(u), at));
+    if (any_lane(fabs(slope) + fabs(bend) > 0.5f * at)) {
+        for (int i = 0; i < PLACES; ++i) {
+            const float u = ((float)i + 0.5f) * (2.0f / PLACES) - 1.0f;
+            sum += emission_of(volume, fma(fma(bend, splat(u), slope), splat(u), at));
+        }
+        return (1.0f / PLACES) * sum;
     }
-    return (1.0f / PLACES) * sum;
+    // Where it changes little, the points of Gauss and Legendre.
+    const float points[2] = {0.86113631f, 0.33998104f}, weights[2] = {0.17392742f, 0.32607258f};
+    for (int i = 0; i < 2; ++i) {
+        const floatv even = fma(bend, splat(points[i] * points[i]), at), odd = points[i] * slope;
+        sum = fma(splat(weights[i]), emission_of(volume, even + odd) + emission_of(volume, even - odd), sum);
+    }
+    return sum;
 }
 
 // Returns what fading leaves of light after a length.
 INLINE floatv left_after(const TextureView *const view, const floatv t) {
     floatv left = splat(view->scale);
-    const floatv base = 1.0f / fma(t, splat(view->per_length), splat(view->beta));
-    for (uint i = 0; i < view->power; ++i)
-        left *= base;
+    if (view->power > 0u) {
+        const floatv base = 1.0f / fma(t, splat(view->per_length), splat(view->beta));
+        for (uint i = 0; i < view->power; ++i)
+            left *= base;
+    }
     return view->absorbed > 0.0f ? left * exp2(-view->absorbed * t) : left;
 }
 
@@ -194,21 +243,38 @@ __kernel void draw_texture(const FilmPart part, const TextureView view, const Te
     const Course course = course_of(&view, &volume, part.first + begin + LANE_NUMBERS, depths, &count);
     float3v sum = uniform3((float4)(0.0f));
     const uint most = (uint)most_of(count);
+    // Of reciprocals all ends of pieces are looked at, too; the near one is the next one's far end.
+    const bool has_ends = volume.power > 0u && volume.slices == 0u;
+    floatv fars[3];
+    bool are_there = false;
     for (uint i = 0; i < most; ++i) {
         // From far to near, as slices are blended.
         const floatv number = splat((float)(most - 1u - i));
         const floatv middle = fma(number + MIDDLE, course.step, course.begin);
         const intv is_outside = (number >= count) | (middle < course.low) | (middle > course.high);
         const floatv left = select(course.step * left_after(&view, middle), splat(0.0f), is_outside);
-        if (!any_lane(left != 0.0f))
+        if (!any_lane(left != 0.0f)) {
+            are_there = false;
             continue;
+        }
         for (uint channel = 0; channel < volume.channels; ++channel) {
-            const Cells cells = {&volume, values + channel * volume.plane};
-            const floatv it = left * mean_of_piece(&cells, &course, middle);
+            const Cells cells = {&volume, values + (size_t)channel * volume.sheet * volume.layers};
+            floatv at = splat(0.0f), near = at, far = are_there ? fars[channel] : at;
+            const uint end = has_ends ? 3u : 2u;
+            for (uint place = has_ends && !are_there ? 0u : 1u; place < end; ++place) {
+                const floatv t = fma((1.0f - (float)place) * 0.5f, course.step, middle);
+                const floatv stored = stored_at(&cells, place_at(&course, t));
+                far = place == 0u ? stored : far;
+                at = place == 1u ? stored : at;
+                near = place == 2u ? stored : near;
+            }
+            fars[channel] = near;
+            const floatv it = left * (has_ends ? mean_of_piece(&volume, far, at, near) : emission_of(&volume, at));
             sum.x += channel == 0u ? it : splat(0.0f);
             sum.y += channel == 1u || volume.channels == 1u ? it : splat(0.0f);
             sum.z += channel == 2u || volume.channels == 1u ? it : splat(0.0f);
         }
+        are_there = has_ends;
     }
     light.x = fma(sum.x, splat(volume.red), light.x);
     light.y = fma(sum.y, splat(volume.green), light.y);

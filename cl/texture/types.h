@@ -20,11 +20,11 @@ typedef struct {
     float4 to_x, to_y, to_z; // from a place to cells: 0 is the middle of the first
     float red, green, blue;
     float floor;                       // no reciprocal is below
-    uint columns, rows, layers, plane; // cells; of a channel
+    uint columns, rows, layers, sheet; // cells; what is between values of one layer and the next
     uint channels, power, is_cubic;    // power: 0 of emission, 1 or 2 of reciprocals
     uint slices;                       // 0: by rays
     float step;                        // cells
     float middle, radius;              // along the view, and of the ball around the box
-    uint padding;
+    uint line;                         // what is between values of one row and the next
 } TextureVolume;
 CHECK_SIZE(TextureVolume, SIZEOF_TEXTUREVOLUME);

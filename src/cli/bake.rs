@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use energywave::glam::DVec3;
-use energywave::volume::{CellValue, Grid, Storage, Volume, VolumeFile};
+use energywave::volume::{CellValue, Grid, Storage, Texture, Volume, VolumeFile};
 use energywave::{Error, Renderer, Scene};
 
 use super::animate::Names;
@@ -25,8 +25,12 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
             Store::Reciprocal => scene.reciprocal(),
         };
         let file = VolumeFile::create(&path, arguments.half)?.storing(storage)?;
-        files.push((scene, grid, file));
+        files.push((scene, grid, storage, file));
     }
+    // A series of files has one number a cell throughout, or three.
+    let mut colors = files.iter().map(|(scene, ..)| scene.one_color());
+    let first = colors.next().flatten();
+    let color = first.filter(|_| colors.all(|other| other == first));
     catch_interrupts();
     let devices = choose_devices(arguments.device.device.as_deref())?;
     let mut renderer = Renderer::on_devices(&devices, &arguments.device.options())?;
@@ -40,7 +44,7 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
                 .to_string_lossy(),
         ),
     };
-    for (scene, grid, file) in files {
+    for (scene, grid, storage, file) in files {
         let begun = Instant::now();
         let volume = baked(arguments, &mut renderer, &scene, grid)?;
         let took = begun.elapsed().as_secs_f64();
@@ -54,7 +58,15 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
         ));
         warn_of_thin_cores(&scene, &volume);
         let mut notes = vec![("scene".to_owned(), name.clone())];
-        if let Some(error) = renderer.bake_error(&scene, &volume)? {
+        let error = match storage {
+            Storage::Emission => renderer.bake_error(&scene, &volume)?,
+            Storage::Reciprocal { .. } => {
+                // As `[[volume]]` draws it; other programs have no use for it.
+                let drawn = energywave::scene::Volume::new(Texture::of(&volume, storage, color)?);
+                renderer.drawn_error(&scene, volume.grid(), &drawn)?
+            }
+        };
+        if let Some(error) = error {
             let error = format!(
                 "median {:.1e}, 99.9 % at most {:.1e}, worst {:.1e}, of {} rays of the scene's camera",
                 error.median, error.most, error.worst, error.rays
@@ -62,7 +74,7 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
             note(&format!("error: {error}"));
             notes.push(("error".to_owned(), error));
         }
-        file.write(&volume, &notes)?;
+        file.in_one_color(color).write(&volume, &notes)?;
     }
     Ok(())
 }

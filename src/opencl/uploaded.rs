@@ -128,23 +128,37 @@ impl<T: Pod> UploadedShared<T> {
         if !self.copies.reap() {
             self.contents = None;
         }
-        let Some(values) = values else {
-            return Ok(());
-        };
-        let is_there = |there: &Arc<Vec<T>>| Arc::ptr_eq(there, values);
+        match values {
+            Some(values) => self.upload_made(compute, values, || Arc::clone(values)),
+            None => Ok(()),
+        }
+    }
+
+    /// Makes the device's values those that are made of shared ones, unless it has those of them.
+    pub(crate) fn upload_made(
+        &mut self,
+        compute: &Compute,
+        of: &Arc<Vec<T>>,
+        make: impl FnOnce() -> Arc<Vec<T>>,
+    ) -> Result<()> {
+        if !self.copies.reap() {
+            self.contents = None;
+        }
+        let is_there = |there: &Arc<Vec<T>>| Arc::ptr_eq(there, of);
         if self.contents.as_ref().is_some_and(is_there) {
             return Ok(());
         }
         self.contents = None;
+        let values = make();
         let buffer = match self.buffer.take() {
             Some(buffer) if buffer.len() >= values.len() => buffer,
             _ => DeviceBuffer::new(compute, self.what, values.len())?,
         };
         let buffer = self.buffer.insert(buffer);
         // SAFETY: shared values never change, and `copies` keeps them.
-        let event = unsafe { buffer.begin_write(compute, values) }?;
-        self.copies.keep(event, Arc::clone(values));
-        self.contents = Some(Arc::clone(values));
+        let event = unsafe { buffer.begin_write(compute, &values) }?;
+        self.copies.keep(event, values);
+        self.contents = Some(Arc::clone(of));
         Ok(())
     }
 

@@ -21,8 +21,13 @@ pub(super) struct Volumes {
 
 impl Volumes {
     pub(super) fn new(scene: &Scene, integrand: Integrand) -> Self {
+        let plane = scene.view_plane();
+        let seen = scene
+            .volumes
+            .iter()
+            .map(|it| it.as_seen(&plane).into_owned());
         Self {
-            list: scene.volumes.iter().cloned().collect(),
+            list: seen.collect(),
             integrand,
         }
     }
@@ -35,7 +40,7 @@ impl Volumes {
     pub(super) fn light(&self, ray: &Ray, end: f64) -> DVec3 {
         let of = |volume: &Volume| {
             let light = [0, 1, 2].map(|channel| self.integral(volume, channel, ray, end));
-            volume.coefficient * volume.color * DVec3::from(light)
+            volume.emission() * DVec3::from(light)
         };
         self.list.iter().map(of).sum()
     }

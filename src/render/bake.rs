@@ -3,12 +3,10 @@
 use std::ops::ControlFlow;
 
 use super::{Renderer, RendererBackend};
-use glam::DVec3;
 
 use crate::error::{Error, Result};
-use crate::image::ImageSize;
 use crate::reference::Emitter;
-use crate::scene::{Measure, Profile, Ray, Reduction, Scene, ViewPlane};
+use crate::scene::{Profile, Reduction, Scene};
 use crate::threads;
 use crate::volume::{BRICK, CellValue, Grid, Storage, Volume};
 
@@ -93,83 +91,6 @@ impl Renderer {
             }
             RendererBackend::Reference { .. } => bake_reference(scene, (grid, value), progress),
         }
-    }
-}
-
-/// Rays across the picture by which the error of a volume is measured, at most.
-const MOST_ACROSS: u32 = 128;
-
-/// A ray counts that has so much of the light of the brightest.
-const LEAST_SHARE: f64 = 1e-3;
-
-/// How far the light of a volume, interpolated linearly, is from that of its scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BakeError {
-    /// The relative error that half of all rays have, and no others.
-    pub median: f64,
-    /// That which 99.9 % do not pass.
-    pub most: f64,
-    /// The greatest.
-    pub worst: f64,
-    /// How many rays count: those with at least a thousandth of the brightest one's light.
-    pub rays: usize,
-}
-
-impl Renderer {
-    /// Measures how exactly a volume shows its scene: along rays of the scene's camera, at most 128 across, as far as
-    /// they are in the box, light without decay or absorption is compared with that of the cells, interpolated
-    /// linearly. The error is that of the channel that is farthest off, relative to the brightest channel of the ray.
-    /// `None`: no ray meets light in the box.
-    ///
-    /// # Errors
-    /// As [`Renderer::integrate`].
-    pub fn bake_error(&mut self, scene: &Scene, volume: &Volume) -> Result<Option<BakeError>> {
-        let ImageSize { width, height } = scene.image;
-        let across = MOST_ACROSS.min(width.max(height));
-        let part = |edge: u32| (edge * across).div_ceil(width.max(height)).max(1);
-        let size = ImageSize {
-            width: part(width),
-            height: part(height),
-        };
-        let mut bare = scene.clone();
-        (bare.decay, bare.absorption, bare.depth) = (None, None, None);
-        bare.integration.measure = Measure::Length;
-        let plane = ViewPlane::new(&scene.camera, size, scene.ray_length());
-        let pixels =
-            (0..size.height).flat_map(|row| (0..size.width).map(move |column| (column, row)));
-        let in_box = |(column, row)| {
-            let ray = plane.ray(column, row);
-            let [begin, end] = volume.grid().crossed(ray.origin, ray.span)?;
-            Some(Ray::between(ray.at(begin), ray.at(end)))
-        };
-        let rays: Vec<Ray> = pixels.filter_map(in_box).collect();
-        let exact = self.integrate(&bare, &rays)?;
-        let mut found = vec![DVec3::ZERO; rays.len()];
-        threads::for_each_chunk(&mut found, size.width as usize, |chunk, found| {
-            let rays = &rays[chunk * size.width as usize..];
-            for (found, ray) in found.iter_mut().zip(rays) {
-                *found = volume.integral(ray.origin, ray.span);
-            }
-        });
-        let exact: Vec<DVec3> = exact.into_iter().map(DVec3::from).collect();
-        let brightest = exact.iter().map(|it| it.max_element()).fold(0.0, f64::max);
-        let counts = |exact: &DVec3| exact.max_element() > LEAST_SHARE * brightest;
-        let both = exact.iter().zip(&found).filter(|(exact, _)| counts(exact));
-        let mut errors: Vec<f64> = both
-            .map(|(exact, found)| (found - exact).abs().max_element() / exact.max_element())
-            .collect();
-        errors.sort_by(f64::total_cmp);
-        let Some(&worst) = errors.last() else {
-            return Ok(None);
-        };
-        let at =
-            |share: f64| errors[((errors.len() as f64 * share) as usize).min(errors.len() - 1)];
-        Ok(Some(BakeError {
-            median: at(0.5),
-            most: at(0.999),
-            worst,
-            rays: errors.len(),
-        }))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The renderer: one front for the OpenCL devices and the built-in reference.
 
 mod bake;
+mod bake_error;
 mod bloom;
 mod device;
 mod engines;
@@ -33,7 +34,7 @@ use crate::image::{Bloom, RadianceImage, kept_image, spread_light};
 use crate::opencl::{MappedFilm, RendererOptions};
 use crate::reference;
 use crate::scene::{CheckedSources, DepthLayers, Scene};
-pub use bake::BakeError;
+pub use bake_error::BakeError;
 use device::Backend;
 use one::{DeviceRenderer, Rows};
 use referenced::{draw_reference, reference_cost};

@@ -39,6 +39,7 @@ mod lighting;
 mod list;
 mod mesh;
 mod metaballs;
+mod one_color;
 mod particles;
 mod points;
 #[cfg(feature = "files")]
@@ -94,7 +95,7 @@ pub use source::*;
 pub(crate) use stamp::SourcesStamp;
 pub use track::{Interpolation, Track, TrackLoop, TrackNoise, TrackValue};
 pub(crate) use validate::CheckedSources;
-pub use volume::{Volume, VolumeInterpolation};
+pub use volume::{Volume, VolumeInterpolation, VolumeShape};
 
 use crate::image::{DepthImage, Display, ImageSize};
 use kinds::for_each_kind;

@@ -1,12 +1,17 @@
 //! Volumes of a scene: light that cells of a texture give off, in a box that may be turned.
 
+use std::borrow::Cow;
+
 use glam::{DMat3, DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::values::{Checked, Fault, LARGEST, finite, vector};
-use super::{Reduction, Scene};
+use super::{Reduction, Scene, ViewPlane};
 use crate::error::SceneError;
 use crate::volume::Texture;
+
+/// How thick the plate of a billboard is, of its longer edge.
+const THICKNESS: f64 = 1e-2;
 
 /// How cells are interpolated.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
@@ -18,6 +23,18 @@ pub enum VolumeInterpolation {
     /// By 64 of them (Catmull, Rom 1974).
     #[default]
     Cubic,
+}
+
+/// What is drawn of a volume.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum VolumeShape {
+    /// Its cells, where they are.
+    #[default]
+    Volume,
+    /// One picture of them on a plate that always faces the view: what games had before, to compare with.
+    Billboard,
 }
 
 /// A volume in a scene: what its cells give off, coefficient times colour times that of the texture. It hides nothing
@@ -39,6 +56,10 @@ pub struct Volume {
     pub color: DVec3,
     /// How its cells are interpolated.
     pub interpolation: VolumeInterpolation,
+    /// What is drawn of it.
+    pub shape: VolumeShape,
+    /// Its axes, where its rotation is not what says them.
+    pub(super) turned: Option<DMat3>,
 }
 
 impl Volume {
@@ -58,11 +79,43 @@ impl Volume {
             coefficient: 1.0,
             color: DVec3::ONE,
             interpolation: VolumeInterpolation::default(),
+            shape: VolumeShape::default(),
+            turned: None,
         }
+    }
+
+    /// Returns what is drawn from a view: of a billboard, a thin plate that faces it.
+    pub(crate) fn as_seen(&self, plane: &ViewPlane) -> Cow<'_, Self> {
+        if self.shape == VolumeShape::Volume {
+            return Cow::Borrowed(self);
+        }
+        let (right, up) = (plane.column_step.normalize(), -plane.row_step.normalize());
+        let thickness = THICKNESS * self.size.x.max(self.size.z);
+        Cow::Owned(Self {
+            texture: self.texture.picture().clone(),
+            size: DVec3::new(self.size.x, thickness, self.size.z),
+            coefficient: self.coefficient * self.size.y / thickness,
+            shape: VolumeShape::Volume,
+            turned: Some(DMat3::from_cols(right, up.cross(right), up)),
+            ..self.clone()
+        })
+    }
+
+    /// Returns whether it is the plate of a billboard, which slices may miss.
+    pub(crate) fn is_plate(&self) -> bool {
+        self.turned.is_some()
+    }
+
+    /// Returns what the light of its cells is multiplied with, linear RGB.
+    pub(crate) fn emission(&self) -> DVec3 {
+        self.coefficient * self.color * self.texture.color()
     }
 
     /// Returns the axes of its box in the world, as columns.
     pub(crate) fn axes(&self) -> DMat3 {
+        if let Some(axes) = self.turned {
+            return axes;
+        }
         let [x, y, z] = self.rotation.to_array().map(f64::to_radians);
         let turn =
             DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
@@ -96,9 +149,11 @@ impl Volume {
         vector("rotation", self.rotation)?;
         finite("coefficient", self.coefficient)?;
         vector("color", self.color)?;
+        vector("file", self.texture.color())?;
         for (key, least) in [
             ("coefficient", self.coefficient),
             ("color", self.color.min_element()),
+            ("file", self.texture.color().min_element()),
         ] {
             if least < 0.0 {
                 let message = format!("{least}; volumes take no light away: 0 or more");

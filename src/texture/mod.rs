@@ -114,19 +114,21 @@ impl Textures {
     ) -> Result<TexturePlan> {
         let make = || UploadedShared::new("the cells of a volume");
         self.values.resize_with(scene.volumes.len(), make);
-        for (values, volume) in self.values.iter_mut().zip(scene.volumes.iter()) {
-            values.upload(compute, Some(volume.texture.values()))?;
+        let plane = scene.view_plane();
+        let seen: Vec<_> = scene.volumes.iter().map(|it| it.as_seen(&plane)).collect();
+        for (values, volume) in self.values.iter_mut().zip(&seen) {
+            let texture = &volume.texture;
+            values.upload_made(compute, texture.values(), || pack::strided(texture))?;
         }
         let depths = scene.depth.as_ref().map(DepthImage::shared_values);
         self.depths.upload(compute, depths)?;
         let own = scene.depth.as_ref().map(DepthImage::along);
         let along = there.map(|(_, along)| along).or(own);
-        let plane = scene.view_plane();
         let method = scene.integration.volumes;
-        let volumes = scene.volumes.iter();
         Ok(TexturePlan {
             view: TextureView::new(scene, &plane, along),
-            volumes: volumes
+            volumes: seen
+                .iter()
                 .map(|volume| TextureVolume::new(volume, &plane, method))
                 .collect(),
             format,

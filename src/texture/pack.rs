@@ -1,12 +1,14 @@
 //! The structs of `cl/texture/types.h`, in the same order, and what packs views and volumes into them.
 
 use std::f64::consts::LOG2_E;
+use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::image::DepthAlong;
 use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
 use crate::scene::{Scene, ViewPlane, Volume, VolumeInterpolation, VolumeMethod};
+use crate::volume::Texture;
 
 device_struct! {
     /// The rays of the picture, and what light becomes along them.
@@ -43,7 +45,7 @@ device_struct! {
         columns: u32 = 64,
         rows: u32 = 68,
         layers: u32 = 72,
-        plane: u32 = 76,
+        sheet: u32 = 76,
         channels: u32 = 80,
         power: u32 = 84,
         is_cubic: u32 = 88,
@@ -51,7 +53,7 @@ device_struct! {
         step: f32 = 96,
         middle: f32 = 100,
         radius: f32 = 104,
-        padding: u32 = 108,
+        line: u32 = 108,
     }
 }
 
@@ -97,13 +99,15 @@ impl TextureVolume {
     pub(super) fn new(volume: &Volume, plane: &ViewPlane, method: VolumeMethod) -> Self {
         let texture = &volume.texture;
         let [columns, rows, layers] = texture.cells();
+        let [line, sheet] = strides(texture.cells());
         let to_cells = volume.to_cells();
         let middle = 0.5 * (DVec3::from(texture.cells().map(f64::from)) - 1.0);
         let from_eye = middle - to_cells * (volume.center - plane.eye);
         let row = |axis: usize| four(to_cells.row(axis), from_eye[axis]);
-        let [red, green, blue] = (volume.coefficient * volume.color).as_vec3().to_array();
+        let [red, green, blue] = volume.emission().as_vec3().to_array();
         let (slices, step) = match method {
             VolumeMethod::Ray { step } => (0, step),
+            VolumeMethod::Slices { .. } if volume.is_plate() => (0, 1.0),
             VolumeMethod::Slices { count } => (count, 1.0),
         };
         Self {
@@ -117,7 +121,7 @@ impl TextureVolume {
             columns,
             rows,
             layers,
-            plane: columns * rows * layers,
+            sheet,
             channels: texture.channels(),
             power: texture.storage().power(),
             is_cubic: u32::from(volume.interpolation == VolumeInterpolation::Cubic),
@@ -125,7 +129,44 @@ impl TextureVolume {
             step: step as f32,
             middle: (volume.center - plane.eye).dot(plane.forward) as f32,
             radius: volume.radius() as f32,
-            padding: 0,
+            line,
         }
     }
+}
+
+/// Values of a cache line.
+const LINE: u32 = 16;
+
+/// Grids with shorter rows stay as they are.
+const LONG: u32 = 64;
+
+/// Returns what is between the values of one row and the next, and of one layer and the next: odd numbers of cache
+/// lines, because cells that are powers of 2 apart drive each other out of caches (256^3 cells of three channels are
+/// drawn 1.8 times as fast as without).
+pub(super) fn strides([columns, rows, _]: [u32; 3]) -> [u32; 2] {
+    if columns < LONG {
+        return [columns, columns * rows];
+    }
+    let line = LINE * (columns.div_ceil(LINE) | 1);
+    [line, line * (rows | 1)]
+}
+
+/// Returns the values of all channels with such strides between them.
+pub(super) fn strided(texture: &Texture) -> Arc<Vec<f32>> {
+    let cells = texture.cells();
+    let [columns, rows, layers] = cells.map(|it| it as usize);
+    let [line, sheet] = strides(cells).map(|it| it as usize);
+    if line == columns {
+        return Arc::clone(texture.values());
+    }
+    let mut values = vec![0.0; sheet * layers * texture.channels() as usize];
+    let sheets = values
+        .chunks_exact_mut(sheet)
+        .zip(texture.values().chunks_exact(columns * rows));
+    for (to, from) in sheets {
+        for (to, from) in to.chunks_exact_mut(line).zip(from.chunks_exact(columns)) {
+            to[..columns].copy_from_slice(from);
+        }
+    }
+    Arc::new(values)
 }

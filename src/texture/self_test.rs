@@ -100,7 +100,7 @@ fn volumes() -> Result<[Volume; 2]> {
 fn scene(volume: Volume) -> Scene {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.5, -4.0, 1.0), DVec3::ZERO));
     scene.image = SIZE;
-    scene.camera.fov_y = 30.0_f64.to_radians();
+    scene.camera.fov_y = 30.0;
     scene.integration.measure = Measure::Length;
     scene.integration.volumes = VolumeMethod::Ray { step: 0.05 };
     scene.decay = Some(Decay::new(0.5, 0.2));

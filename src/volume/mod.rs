@@ -9,6 +9,7 @@ mod file;
 mod grid;
 mod integral;
 mod light_ball;
+mod picture;
 #[cfg(feature = "files")]
 mod read;
 mod texture;

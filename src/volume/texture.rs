@@ -2,13 +2,12 @@
 //! Sakai 2006, whose array holds R, G, B and alpha: here alpha RGB, light a unit of length).
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
-use super::LightBall;
+use super::{LightBall, Volume};
 use crate::error::{Error, Result};
-#[cfg(feature = "files")]
 use crate::memory;
 
 /// Most cells along an edge.
@@ -83,8 +82,11 @@ pub struct Texture {
     /// All of red, then green, then blue, or one for all; x fastest, then y, then z.
     values: Arc<Vec<f32>>,
     least: f32,
+    color: DVec3,
     place: Option<[DVec3; 2]>,
     origin: TextureOrigin,
+    /// What billboards show, once it was asked for.
+    picture: Arc<OnceLock<Box<Texture>>>,
 }
 
 impl PartialEq for Texture {
@@ -93,7 +95,7 @@ impl PartialEq for Texture {
         is_same
             && (self.cells, self.channels, self.storage, self.place)
                 == (other.cells, other.channels, other.storage, other.place)
-            && self.origin == other.origin
+            && (self.color, &self.origin) == (other.color, &other.origin)
     }
 }
 
@@ -157,9 +159,57 @@ impl Texture {
             storage,
             values: Arc::new(values),
             least,
+            color: DVec3::ONE,
             place: None,
             origin: TextureOrigin::Values,
+            picture: Arc::default(),
         })
+    }
+
+    pub(super) fn kept_picture(&self) -> &OnceLock<Box<Self>> {
+        &self.picture
+    }
+
+    /// Returns the same with other cells.
+    pub(super) fn with_values(&self, cells: [u32; 3], values: Vec<f32>, storage: Storage) -> Self {
+        Self {
+            cells,
+            storage,
+            values: Arc::new(values),
+            least: 0.0,
+            picture: Arc::default(),
+            ..self.clone()
+        }
+    }
+
+    /// Makes one of the cells of a volume, where they are; with the colour of all light ([`Scene::one_color`]) they
+    /// have one channel.
+    ///
+    /// [`Scene::one_color`]: crate::Scene::one_color
+    ///
+    /// # Errors
+    /// As [`Texture::new`]; [`Error::OutOfMemory`].
+    pub fn of(volume: &Volume, storage: Storage, color: Option<DVec3>) -> Result<Self> {
+        let grid = volume.grid();
+        let (cells, [low, high]) = (grid.cells(), grid.bounds());
+        let channels = match color {
+            Some(color) => color.max_position()..color.max_position() + 1,
+            None => 0..3,
+        };
+        let [columns, rows, layers] = cells;
+        check_room(cells, channels.len() as u64)?;
+        let mut values = Vec::with_capacity(channels.len() * count(cells));
+        let mut row = vec![0.0; 3 * columns as usize];
+        for channel in channels {
+            for (z, y) in (0..layers).flat_map(|z| (0..rows).map(move |y| (z, y))) {
+                volume.read_row(y, z, &mut row);
+                let of_channel = row.iter().skip(channel).step_by(3);
+                values.extend(of_channel.map(|value| storage.stored(*value)));
+            }
+        }
+        let texture = Self::new(cells, values, storage)?;
+        let placed = texture.placed(0.5 * (low + high), high - low);
+        Ok(placed.in_color(color.unwrap_or(DVec3::ONE)))
     }
 
     /// Makes that of a light ball.
@@ -196,6 +246,12 @@ impl Texture {
         &self.values
     }
 
+    /// Returns what the light of all cells is multiplied with, linear RGB.
+    #[must_use]
+    pub fn color(&self) -> DVec3 {
+        self.color
+    }
+
     /// Returns where the values come from.
     #[must_use]
     pub fn origin(&self) -> &TextureOrigin {
@@ -221,6 +277,13 @@ impl Texture {
     #[must_use]
     pub fn placed(mut self, center: DVec3, size: DVec3) -> Self {
         self.place = Some([center, size]);
+        self
+    }
+
+    /// Says what the light of all cells is multiplied with, linear RGB, 0 or more.
+    #[must_use]
+    pub fn in_color(mut self, color: DVec3) -> Self {
+        self.color = color;
         self
     }
 
@@ -257,7 +320,6 @@ pub(crate) fn check_cells(cells: [u32; 3]) -> std::result::Result<(), String> {
 }
 
 /// Refuses a texture for which there is no memory, before it is read; `channels` of it are kept at a time.
-#[cfg(feature = "files")]
 pub(crate) fn check_room(cells: [u32; 3], channels: u64) -> Result<()> {
     let bytes = 4 * channels * cells.map(u64::from).iter().product::<u64>();
     let [x, y, z] = cells;

@@ -1,4 +1,5 @@
-"""Reads ring.raw, and what other programs find in ring.vdb, half.vdb, ring.nrrd and ring.vti, and compares the cells.
+"""Reads ring.raw, and what other programs find in ring.vdb, half.vdb, ring.nrrd and ring.vti, and compares the cells;
+so with white.raw and white.vdb, of light of one colour.
 
 Arguments: the folder; anything more, and the cells that are compared are not those of the volume.
 """
@@ -19,7 +20,7 @@ middle = numpy.array(sheet["low"]) + sheet["cell"] / 2
 failed = False
 
 
-def compare(name, found, limit):
+def compare(name, found, limit, cells=cells):
     global failed
     error = float(numpy.abs(found - cells).max() / cells.max())
     print(f"read: {name}: {error:.1e}")
@@ -45,6 +46,12 @@ else:
         failed |= bool(numpy.abs(place - middle).max() > 1e-9 or numpy.abs(step - sheet["cell"]).max() > 1e-9)
         failed |= density.metadata["class"] != "fog volume" or density.metadata["error"] != sheet["error"]
         failed |= density.activeVoxelCount() != int((cells.max(axis=3) > 0).sum())
+
+    density, color = sorted(openvdb.readAll(str(folder / "white.vdb"))[0], key=lambda grid: grid.name == "color")
+    density.copyToArray(values)
+    color.copyToArray(colors)
+    cells_of_white = numpy.fromfile(folder / "white.raw", "<f4").reshape(layers, rows, columns, 1).transpose(2, 1, 0, 3)
+    compare("white.vdb", values[..., None] * colors, 1e-6, cells_of_white)
 
 try:
     import nrrd

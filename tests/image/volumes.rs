@@ -3,7 +3,7 @@
 
 use energywave::glam::DVec3;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, RadianceImage};
-use energywave::scene::{Camera, Decay, Volume, VolumeInterpolation, VolumeMethod};
+use energywave::scene::{Camera, Decay, Volume, VolumeInterpolation, VolumeMethod, VolumeShape};
 use energywave::volume::{Storage, Texture};
 use energywave::{Device, ErrorKind, Renderer, RendererOptions, Scene};
 
@@ -164,4 +164,102 @@ fn a_volume_of_ones_gives_the_length_of_each_ray_in_its_box() {
     }
     println!("{light} {expected}");
     assert!((f64::from(light) - expected).abs() < 1e-3 * expected);
+}
+
+#[test]
+fn grids_of_few_cells_are_read_within_their_edges() {
+    let mut renderers = [
+        Renderer::new(&common::device()).unwrap(),
+        common::renderer(1, ""),
+    ];
+    for cells in [
+        [1, 1, 1],
+        [1, 2, 3],
+        [2, 1, 4],
+        [3, 5, 1],
+        [4, 3, 2],
+        [70, 2, 3],
+    ] {
+        for interpolation in [VolumeInterpolation::Linear, VolumeInterpolation::Cubic] {
+            let count: u32 = cells.iter().product();
+            let values = (0..count).map(|it| (it * 7 % 11 + 1) as f32).collect();
+            let mut scene = scene(Storage::Emission);
+            scene.image = ImageSize {
+                width: 17,
+                height: 13,
+            };
+            let mut volume = Volume::new(Texture::new(cells, values, Storage::Emission).unwrap());
+            (volume.size, volume.interpolation) = (DVec3::new(1.6, 2.0, 1.4), interpolation);
+            scene.volumes = vec![volume].into();
+            scene.integration.volumes = VolumeMethod::Ray { step: 0.01 };
+            let expected = reference(&scene);
+            for renderer in &mut renderers {
+                let error = difference(&renderer.render(&scene).unwrap(), &expected);
+                println!("{cells:?}, {interpolation:?}: {error:.1e}");
+                assert!(error < ERROR, "{cells:?}, {interpolation:?}: {error}");
+            }
+            scene.volumes[0].rotation.x += 5.0;
+            let other = renderers[0].render(&scene).unwrap();
+            assert!(
+                difference(&other, &expected) > ERROR,
+                "a turned one is the same"
+            );
+        }
+    }
+}
+
+/// Makes a beam along z, as figure 5.4 of Sakai 2006 turns it, seen from -y.
+fn turned(degrees: f64, shape: VolumeShape) -> Scene {
+    let cells = [12_u32, 12, 36];
+    let value = |index: u32| {
+        let at = [index % 12, index / 12 % 12, index / 144];
+        let [x, y, z] =
+            [0, 1, 2].map(|axis| (f64::from(at[axis]) + 0.5) / f64::from(cells[axis]) * 2.0 - 1.0);
+        ((-6.0 * (x * x + y * y)).exp() * (1.0 - z.powi(8)) * (1.0 + 0.3 * z)) as f32
+    };
+    let values = (0..12 * 12 * 36).map(value).collect();
+    let mut volume = Volume::new(Texture::new(cells, values, Storage::Emission).unwrap());
+    (volume.rotation.x, volume.shape) = (degrees, shape);
+    let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -8.0, 0.0), DVec3::ZERO));
+    scene.image = ImageSize {
+        width: 45,
+        height: 37,
+    };
+    scene.camera.fov_y = 20.0;
+    scene.volumes.push(volume);
+    scene
+}
+
+#[test]
+fn a_volume_that_is_turned_grows_brighter_and_a_billboard_does_not() {
+    let mut renderer = Renderer::new(&common::device()).unwrap();
+    let mut draw = |degrees: f64, shape| renderer.render(&turned(degrees, shape)).unwrap();
+    let brightest = |image: &RadianceImage| {
+        let lights = image.as_slice().chunks_exact(4).map(|it| it[0]);
+        lights.fold(0.0, f32::max)
+    };
+    let front = draw(0.0, VolumeShape::Volume);
+    let plate = draw(0.0, VolumeShape::Billboard);
+    let expected = reference(&turned(0.0, VolumeShape::Billboard));
+    let error = difference(&plate, &expected);
+    println!(
+        "against the reference {error:.1e}, the volume from the front {:.1e}",
+        difference(&plate, &front)
+    );
+    assert!(error < ERROR, "{error}");
+    // From the front they look alike, but for perspective.
+    assert!(difference(&plate, &front) < 0.1);
+    let mut last = brightest(&front);
+    for degrees in [-20.0, -40.0, -60.0] {
+        let volume = draw(degrees, VolumeShape::Volume);
+        assert_eq!(draw(degrees, VolumeShape::Billboard), plate, "{degrees}");
+        let gain = brightest(&volume) / brightest(&plate);
+        println!("{degrees} degrees: the volume is {gain:.2} times as bright as the billboard");
+        assert!(
+            brightest(&volume) > 1.02 * last && difference(&volume, &front) > 0.3,
+            "{degrees}: {gain}"
+        );
+        last = brightest(&volume);
+    }
+    assert!(last > 1.5 * brightest(&plate));
 }

@@ -176,6 +176,12 @@ fn other_programs_read_every_file_and_find_the_same_cells() {
         "--half",
     ]);
     expect(&output, 0, "");
+    let white = RING.replace("[0.2, 0.5, 1.0]", "[1, 1, 1]");
+    fs::write(folder.path().join("white.toml"), format!("{CAMERA}{white}")).unwrap();
+    for name in ["white.raw", "white.vdb"] {
+        let output = folder.run(&["-q", "bake", "white.toml", "-o", name, "--cells", "150"]);
+        expect(&output, 0, "");
+    }
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/read_volumes.py");
     let read = |spoiled: &str| {
         let mut command = Command::new("/usr/bin/python3");

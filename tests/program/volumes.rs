@@ -15,10 +15,20 @@ const ERROR: f32 = 1e-4;
 const BALL: &str = "[[sphere]]\ncenter = [0.1, 0.2, 0.3]\nradius = 0.1\nreach = 0.5\npeak = 2.0\n\
     color = [1, 0.5, 0.25]\n";
 
+const RING: &str =
+    "[[torus]]\nmajor_radius = 0.3\nradius = 0.1\nreach = 0.2\npeak = 1.0\ncolor = [0.2, 0.5, 1]\n";
+
 #[test]
 fn volumes_that_were_baked_are_read_as_they_were() {
+    // Light of one colour is one number a cell.
+    for (ring, channels) in [("", 1), (RING, 3)] {
+        compare(&format!("{CAMERA}{BALL}{ring}"), channels);
+    }
+}
+
+fn compare(scene: &str, channels: u32) {
     let folder = Folder::new();
-    fs::write(folder.path().join("ball.toml"), format!("{CAMERA}{BALL}")).unwrap();
+    fs::write(folder.path().join("ball.toml"), scene).unwrap();
     let scene = Scene::from_file(folder.path().join("ball.toml")).unwrap();
     let [low, high] = scene.light_bounds().unwrap();
     let grid = Grid::new(0.5 * (low + high), high - low, 12).unwrap();
@@ -31,7 +41,11 @@ fn volumes_that_were_baked_are_read_as_they_were() {
         let output = folder.run(&["-q", "bake", "ball.toml", "-o", name, "--cells", "12"]);
         expect(&output, 0, "");
         let texture = Texture::open(folder.path().join(name)).unwrap();
-        assert_eq!((texture.cells(), texture.channels()), (grid.cells(), 3));
+        assert_eq!(
+            (texture.cells(), texture.channels()),
+            (grid.cells(), channels)
+        );
+        let color = texture.color().as_vec3();
         let [center, size] = texture.place().unwrap();
         assert!(
             (center - 0.5 * (low + high)).length() < 1e-9 && (size - (high - low)).length() < 1e-9
@@ -48,7 +62,8 @@ fn volumes_that_were_baked_are_read_as_they_were() {
                 ];
                 let expected = volume.at(cell);
                 for channel in 0..3 {
-                    let found = texture.values()[(channel * plane + place + shift) as usize];
+                    let of_cell = channel.min(channels - 1) * plane + place + shift;
+                    let found = texture.values()[of_cell as usize] * color[channel as usize];
                     worst = worst.max((found - expected[channel as usize]).abs());
                 }
             }

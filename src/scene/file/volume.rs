@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result, SceneError};
 use crate::scene::colors::{read_color, read_some_colors};
 use crate::scene::values::{read_some_vector, read_vector};
-use crate::scene::{Volume, VolumeInterpolation};
+use crate::scene::{Volume, VolumeInterpolation, VolumeShape};
 use crate::volume::{LightBall, Texture, TextureOrigin};
 
 /// A volume as a file describes it.
@@ -39,6 +39,7 @@ pub(super) struct VolumeTable {
     #[serde(deserialize_with = "read_color")]
     color: DVec3,
     interpolation: VolumeInterpolation,
+    method: VolumeShape,
     /// Its cells, once they were read; the tables of all times share them as long as they name the same.
     #[serde(skip)]
     texture: Arc<OnceLock<Texture>>,
@@ -69,6 +70,8 @@ keys! { pub(in crate::scene) VOLUME_KEYS;
     coefficient: NOT_NEGATIVE, NONE, Value("1"), "what its light is multiplied with";
     color: Color, NONE, Value("[1, 1, 1]"), "what its light is multiplied with, too";
     interpolation: Word(&["linear", "cubic"]), NONE, Value("\"cubic\""), "how cells are interpolated";
+    method: Word(&["volume", "billboard"]), NONE, Value("\"volume\""),
+        "what is drawn: its cells, or one picture of them that always faces the view";
 }
 
 // What is read of `light_ball`.
@@ -91,6 +94,7 @@ impl Default for VolumeTable {
             coefficient: 1.0,
             color: DVec3::ONE,
             interpolation: VolumeInterpolation::default(),
+            method: VolumeShape::default(),
             texture: Arc::default(),
         }
     }
@@ -157,6 +161,7 @@ impl VolumeTable {
             coefficient: volume.coefficient,
             color: volume.color,
             interpolation: volume.interpolation,
+            method: volume.shape,
             texture: Arc::default(),
         })
     }
@@ -195,6 +200,7 @@ impl VolumeTable {
             coefficient: self.coefficient,
             color: self.color,
             interpolation: self.interpolation,
+            shape: self.method,
             ..made
         };
         volume.check().map_err(|fault| fault.of(&table))?;

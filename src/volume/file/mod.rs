@@ -21,21 +21,23 @@ use crate::shown;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VolumeFormat {
     /// `.vdb`, OpenVDB: a sparse grid `density`, the largest channel of the emission, and a sparse grid `color`, the
-    /// emission divided by that. Float32 or, where `half` says so, half floats.
+    /// emission divided by that, of tiles where all light has one. Float32 or, where `half` says so, half floats.
     Vdb {
         /// Whether values are halves.
         half: bool,
     },
-    /// `.nrrd`, float32 RGB, dense.
+    /// `.nrrd`, float32 RGB, or one number for light of one colour, dense.
     Nrrd,
-    /// `.vti`, VTK image data: the cell data `emission`, float32 RGB, dense.
+    /// `.vti`, VTK image data: the cell data `emission`, float32 RGB, or `density`, one number for light of one colour,
+    /// dense.
     Vti,
     /// `.exr`, the layers side by side in an image, for engines without volumes; a JSON beside it says how.
     Slices {
         /// Whether values are halves.
         half: bool,
     },
-    /// `.raw`, float32 RGB, x fastest, then y, then z, dense; a JSON beside it says so.
+    /// `.raw`, float32 RGB, or one number for light of one colour, x fastest, then y, then z, dense; a JSON beside it
+    /// says so.
     Raw,
 }
 
@@ -73,10 +75,18 @@ impl VolumeFormat {
 #[derive(Debug)]
 pub struct VolumeFile {
     format: VolumeFormat,
-    storage: Storage,
+    stored: Stored,
     target: Target,
     /// What stands beside it.
     beside: Option<TextFile>,
+}
+
+/// What is stored of a cell.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stored {
+    storage: Storage,
+    /// That of all light, of which each cell then has its largest channel alone.
+    color: Option<DVec3>,
 }
 
 #[derive(Debug)]
@@ -97,13 +107,13 @@ impl VolumeFile {
         Ok(match format {
             VolumeFormat::Slices { .. } => Self {
                 format,
-                storage: Storage::Emission,
+                stored: Stored::default(),
                 target: Target::Image(ImageFile::create_as(path, ImageFormat::Exr)?),
                 beside: beside()?,
             },
             _ => Self {
                 format,
-                storage: Storage::Emission,
+                stored: Stored::default(),
                 target: Target::Bytes(Output::create(path)?),
                 beside: match format {
                     VolumeFormat::Raw => beside()?,
@@ -127,8 +137,27 @@ impl VolumeFile {
                 "reciprocals are of .nrrd, .vti and .raw files: other programs take the emission"
                     .to_owned(),
             )),
-            storage => Ok(Self { storage, ..self }),
+            storage => {
+                let stored = Stored {
+                    storage,
+                    ..self.stored
+                };
+                Ok(Self { stored, ..self })
+            }
         }
+    }
+
+    /// Says that all light has one colour, linear RGB, whose largest channel is 1 ([`Scene::one_color`]): cells get one
+    /// number, their density, and the file says the colour once. Images of layers have all channels.
+    ///
+    /// [`Scene::one_color`]: crate::Scene::one_color
+    #[must_use]
+    pub fn in_one_color(self, color: Option<DVec3>) -> Self {
+        let stored = Stored {
+            color,
+            ..self.stored
+        };
+        Self { stored, ..self }
     }
 
     /// Writes all, and puts the file in its place. `notes`, names and values, go into what the format has for them.
@@ -137,8 +166,8 @@ impl VolumeFile {
     /// [`Error::Output`] if it cannot be written; nothing is left behind then. [`Error::Unsupported`] for an image of
     /// layers with more than 32768 pixels along an edge; [`Error::OutOfMemory`] for one that does not fit.
     pub fn write(self, volume: &Volume, notes: &[(String, String)]) -> Result<()> {
-        let storage = self.storage;
-        let notes: Vec<_> = facts(volume, storage)
+        let stored = self.stored_as();
+        let notes: Vec<_> = facts(volume, stored)
             .into_iter()
             .chain(notes.to_vec())
             .collect();
@@ -155,11 +184,13 @@ impl VolumeFile {
                 file.write(&slices::image(volume)?, &display)?;
             }
             (Target::Bytes(output), format) => output.write_with(|sink| match format {
-                VolumeFormat::Vdb { half } => vdb::write(sink, volume, half, &notes),
-                VolumeFormat::Nrrd => nrrd::write(sink, volume, storage, &notes),
-                VolumeFormat::Vti => vti::write(sink, volume, storage, &notes),
+                VolumeFormat::Vdb { half } => {
+                    vdb::write(sink, volume, (half, stored.color), &notes)
+                }
+                VolumeFormat::Nrrd => nrrd::write(sink, volume, stored, &notes),
+                VolumeFormat::Vti => vti::write(sink, volume, stored, &notes),
                 VolumeFormat::Raw | VolumeFormat::Slices { .. } => {
-                    write_dense(sink, volume, storage)
+                    write_dense(sink, volume, stored)
                 }
             })?,
         }
@@ -168,14 +199,34 @@ impl VolumeFile {
             _ => None,
         };
         match self.beside {
-            Some(file) => file.write(&raw::json(volume, tiles, &notes)),
+            Some(file) => file.write(&raw::json(volume, (tiles, stored.channels()), &notes)),
             None => Ok(()),
         }
     }
 }
 
+impl VolumeFile {
+    /// Returns what its format stores.
+    fn stored_as(&self) -> Stored {
+        let color = match self.format {
+            VolumeFormat::Slices { .. } => None,
+            _ => self.stored.color,
+        };
+        Stored {
+            color,
+            ..self.stored
+        }
+    }
+}
+
+impl Stored {
+    fn channels(self) -> usize {
+        self.color.map_or(3, |_| 1)
+    }
+}
+
 /// Returns what every file says of itself.
-fn facts(volume: &Volume, storage: Storage) -> Vec<(String, String)> {
+fn facts(volume: &Volume, stored: Stored) -> Vec<(String, String)> {
     let values = match volume.value() {
         CellValue::Center => "emission at the middle of each cell".to_owned(),
         CellValue::Mean(parts) => {
@@ -191,26 +242,30 @@ fn facts(volume: &Volume, storage: Storage) -> Vec<(String, String)> {
         note("values", values),
         note("unit", "linear RGB light a world unit of length".to_owned()),
     ];
-    if let Storage::Reciprocal { power } = storage {
+    if let Some(color) = stored.color {
+        facts.push(note("color", numbers(color, " ")));
+    }
+    if let Storage::Reciprocal { power } = stored.storage {
         facts.push(note("storage", "reciprocal".to_owned()));
         facts.push(note("power", power.to_string()));
     }
     facts
 }
 
-/// Writes all cells, RGB after RGB, x fastest.
-fn write_dense(sink: &mut dyn Sink, volume: &Volume, storage: Storage) -> io::Result<()> {
+/// Writes all cells, RGB after RGB or their densities, x fastest.
+fn write_dense(sink: &mut dyn Sink, volume: &Volume, stored: Stored) -> io::Result<()> {
     let [columns, rows, layers] = volume.grid().cells();
     let mut row = vec![0.0; 3 * columns as usize];
     let mut bytes = Vec::with_capacity(4 * row.len());
+    let (first, step) = stored
+        .color
+        .map_or((0, 1), |color| (color.max_position(), 3));
     for z in 0..layers {
         for y in 0..rows {
             volume.read_row(y, z, &mut row);
             bytes.clear();
-            bytes.extend(
-                row.iter()
-                    .flat_map(|value| storage.stored(*value).to_le_bytes()),
-            );
+            let values = row.iter().skip(first).step_by(step);
+            bytes.extend(values.flat_map(|value| stored.storage.stored(*value).to_le_bytes()));
             sink.write_all(&bytes)?;
         }
     }

@@ -2,14 +2,14 @@
 
 use std::io;
 
-use super::{numbers, write_dense};
+use super::{Stored, numbers, write_dense};
 use crate::output::Sink;
-use crate::volume::{Storage, Volume};
+use crate::volume::Volume;
 
 pub(super) fn write(
     sink: &mut dyn Sink,
     volume: &Volume,
-    storage: Storage,
+    stored: Stored,
     notes: &[(String, String)],
 ) -> io::Result<()> {
     let grid = volume.grid();
@@ -25,11 +25,15 @@ pub(super) fn write(
             )
         })
         .collect();
+    let (axes, channels, none, kind) = match stored.channels() {
+        1 => (3, "", "", ""),
+        _ => (4, "3 ", "none ", "RGB-color "),
+    };
     let header = format!(
-        "NRRD0005\ntype: float\ndimension: 4\nspace dimension: 3\nsizes: 3 {x} {y} {z}\nspace directions: none \
-         ({cell},0,0) (0,{cell},0) (0,0,{cell})\nspace origin: ({origin})\nkinds: RGB-color domain domain domain\n\
-         endian: little\nencoding: raw\n{notes}\n"
+        "NRRD0005\ntype: float\ndimension: {axes}\nspace dimension: 3\nsizes: {channels}{x} {y} {z}\nspace \
+         directions: {none}({cell},0,0) (0,{cell},0) (0,0,{cell})\nspace origin: ({origin})\nkinds: {kind}domain \
+         domain domain\nendian: little\nencoding: raw\n{notes}\n"
     );
     sink.write_all(header.as_bytes())?;
-    write_dense(sink, volume, storage)
+    write_dense(sink, volume, stored)
 }

@@ -30,7 +30,7 @@ struct Sheet<'a> {
 
 pub(super) fn json(
     volume: &Volume,
-    layers: Option<[u32; 2]>,
+    (layers, channels): (Option<[u32; 2]>, usize),
     notes: &[(String, String)],
 ) -> String {
     let grid = volume.grid();
@@ -43,6 +43,7 @@ pub(super) fn json(
         },
         channels: match layers {
             Some(_) => &["red", "green", "blue", "alpha: the largest of them"],
+            None if channels == 1 => &["density"],
             None => &["red", "green", "blue"],
         },
         kind: match layers {

@@ -1,9 +1,11 @@
 //! OpenVDB files, version 224 (Museth 2013; `openvdb/io` of OpenVDB 10): trees of nodes of 32^3 and 16^3 children over
-//! leaves of 8^3 cells, uncompressed. A grid's cell (0,0,0) is the volume's, at the middle of that cell.
+//! leaves of 8^3 cells, uncompressed. A grid's cell (0,0,0) is the volume's, at the middle of that cell. A colour that
+//! is the same everywhere is in active tiles, one for each leaf of the density.
 
 use std::io::{self, SeekFrom};
 
 use exr::prelude::f16;
+use glam::DVec3;
 
 use crate::output::Sink;
 use crate::volume::{BRICK, Brick, Volume};
@@ -73,13 +75,14 @@ type Leaf<'a> = ([u32; 3], &'a Brick);
 pub(super) fn write(
     sink: &mut dyn Sink,
     volume: &Volume,
-    half: bool,
+    (half, color): (bool, Option<DVec3>),
     notes: &[(String, String)],
 ) -> io::Result<()> {
     let mut leaves: Vec<Leaf<'_>> = volume.bricks().collect();
     // As the trees have them: by their upper node's place, x first, then by their lower's.
     leaves.sort_by_key(|(place, _)| (child(*place, LOWER, UPPER), child(*place, 0, LOWER)));
-    let mut to = Writer { sink, half };
+    let color = color.map(|color| color.as_vec3().to_array());
+    let mut to = Writer { sink, half, color };
     to.bytes(&MAGIC.to_le_bytes())?;
     to.word(FILE_VERSION)?;
     LIBRARY.into_iter().try_for_each(|number| to.word(number))?;
@@ -103,6 +106,8 @@ fn child(place: [u32; 3], below: u32, node: u32) -> u32 {
 struct Writer<'a> {
     sink: &'a mut dyn Sink,
     half: bool,
+    /// That of all cells.
+    color: Option<[f32; 3]>,
 }
 
 impl Writer<'_> {
@@ -157,7 +162,8 @@ impl Writer<'_> {
         self.transform(volume)?;
         self.topology(part, leaves)?;
         let blocks = self.sink.stream_position()?;
-        for (_, brick) in leaves {
+        let tile = self.tile(part);
+        for (_, brick) in leaves.iter().filter(|_| tile.is_none()) {
             self.leaf(part, brick)?;
         }
         let end = self.sink.stream_position()?;
@@ -214,35 +220,46 @@ impl Writer<'_> {
         }
         self.bytes(&[0; 12])?; // where it begins
         let lowers = || leaves.chunk_by(|(one, _), (next, _)| lower(*one) == lower(*next));
-        self.node(part, UPPER, lowers().map(|leaves| lower(leaves[0].0)))?;
+        let children = lowers().map(|leaves| lower(leaves[0].0));
+        self.node(part, UPPER, (children, None))?;
+        let tile = self.tile(part);
         for leaves in lowers() {
-            self.node(
-                part,
-                LOWER,
-                leaves.iter().map(|(place, _)| child(*place, 0, LOWER)),
-            )?;
-            for (_, brick) in leaves {
+            let children = leaves.iter().map(|(place, _)| child(*place, 0, LOWER));
+            self.node(part, LOWER, (children, tile))?;
+            for (_, brick) in leaves.iter().filter(|_| tile.is_none()) {
                 self.mask(&active(brick))?;
             }
         }
         Ok(())
     }
 
-    /// Writes a node of `1 << edge` children along an edge, of which it has some.
+    /// Returns the value of tiles that stand for leaves.
+    fn tile(&self, part: Part) -> Option<[f32; 3]> {
+        self.color.filter(|_| matches!(part, Part::Color))
+    }
+
+    /// Writes a node of `1 << edge` children along an edge, of which it has some, or tiles of one value in their place.
     fn node(
         &mut self,
         part: Part,
         edge: u32,
-        children: impl Iterator<Item = u32>,
+        (children, tile): (impl Iterator<Item = u32>, Option<[f32; 3]>),
     ) -> io::Result<()> {
         let count = 1_usize << (3 * edge);
-        let mut there = vec![0_u8; count / 8];
+        let (mut there, none) = (vec![0_u8; count / 8], vec![0_u8; count / 8]);
         children.for_each(|child| there[child as usize / 8] |= 1 << (child % 8));
-        self.mask(&there)?;
-        self.mask(&vec![0; count / 8])?; // no tile is active
+        let (nodes, tiles) = match tile {
+            None => (&there, &none),
+            Some(_) => (&none, &there),
+        };
+        self.mask(nodes)?;
+        self.mask(tiles)?;
         self.bytes(&[ALL_VALUES])?;
-        let size = if self.half { 2 } else { 4 };
-        self.bytes(&vec![0; size * part.channels() * count])
+        for child in 0..count {
+            let is_tile = tiles[child / 8] >> (child % 8) & 1 == 1;
+            self.values(part, tile.filter(|_| is_tile).unwrap_or_default())?;
+        }
+        Ok(())
     }
 
     fn leaf(&mut self, part: Part, brick: &Brick) -> io::Result<()> {

@@ -2,14 +2,14 @@
 
 use std::io;
 
-use super::{numbers, write_dense};
+use super::{Stored, numbers, write_dense};
 use crate::output::Sink;
-use crate::volume::{Storage, Volume};
+use crate::volume::Volume;
 
 pub(super) fn write(
     sink: &mut dyn Sink,
     volume: &Volume,
-    storage: Storage,
+    stored: Stored,
     notes: &[(String, String)],
 ) -> io::Result<()> {
     let grid = volume.grid();
@@ -21,16 +21,18 @@ pub(super) fn write(
         .iter()
         .map(|(name, value)| format!("{name}: {value}\n").replace("--", "- -"))
         .collect();
+    let channels = stored.channels();
+    let name = if channels == 1 { "density" } else { "emission" };
     let header = format!(
         "<?xml version=\"1.0\"?>\n<!--\n{notes}-->\n<VTKFile type=\"ImageData\" version=\"1.0\" \
          byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<ImageData WholeExtent=\"{extent}\" Origin=\"{origin}\" \
-         Spacing=\"{cell} {cell} {cell}\">\n<Piece Extent=\"{extent}\">\n<CellData Scalars=\"emission\">\n<DataArray \
-         type=\"Float32\" Name=\"emission\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/>\n</CellData>\n\
-         </Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_"
+         Spacing=\"{cell} {cell} {cell}\">\n<Piece Extent=\"{extent}\">\n<CellData Scalars=\"{name}\">\n<DataArray \
+         type=\"Float32\" Name=\"{name}\" NumberOfComponents=\"{channels}\" format=\"appended\" offset=\"0\"/>\n\
+         </CellData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_"
     );
     sink.write_all(header.as_bytes())?;
-    let bytes = 12 * grid.cells().map(u64::from).iter().product::<u64>();
+    let bytes = 4 * channels as u64 * grid.cells().map(u64::from).iter().product::<u64>();
     sink.write_all(&bytes.to_le_bytes())?;
-    write_dense(sink, volume, storage)?;
+    write_dense(sink, volume, stored)?;
     sink.write_all(b"\n</AppendedData>\n</VTKFile>\n")
 }

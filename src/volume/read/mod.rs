@@ -49,6 +49,8 @@ pub(super) struct Dense {
     /// The lowest corner of the box and the edges of a cell, world space.
     pub place: Option<[DVec3; 2]>,
     pub storage: Storage,
+    /// What all of them are multiplied with.
+    pub color: DVec3,
 }
 
 impl Dense {
@@ -63,7 +65,8 @@ impl Dense {
         };
         let values: Vec<f32> = (0..self.channels.min(3)).flat_map(channel).collect();
         let texture = Texture::checked(self.cells, values, self.storage)
-            .map_err(|wrong| format!(": {wrong}"))?;
+            .map_err(|wrong| format!(": {wrong}"))?
+            .in_color(self.color);
         Ok(match self.place {
             None => texture,
             Some([low, cell]) => {
@@ -131,6 +134,27 @@ pub(super) fn storage_of(storage: Option<&str>, power: Option<&str>) -> Read<Sto
             ": it stores \"{}\" of power {}; known are \"emission\", and \"reciprocal\" of power 1 or 2",
             shown(other),
             shown(power.unwrap_or("none"))
+        )
+        .into()),
+    }
+}
+
+/// Takes the colour of all cells out of what a file says of itself: white where it says none.
+pub(super) fn color_of(color: Option<&str>) -> Read<DVec3> {
+    let Some(text) = color else {
+        return Ok(DVec3::ONE);
+    };
+    let numbers = text.split_whitespace().map(|it| it.parse().ok());
+    let numbers: Option<Vec<f64>> = numbers.collect();
+    match numbers.as_deref() {
+        Some(&[red, green, blue])
+            if [red, green, blue].iter().all(|it| (0.0..=1e6).contains(it)) =>
+        {
+            Ok(DVec3::new(red, green, blue))
+        }
+        _ => Err(format!(
+            ": its colour is \"{}\"; a colour is three numbers, 0 or more",
+            shown(text)
         )
         .into()),
     }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::bytes::Number;
-use super::{Dense, Read, check_size, storage_of};
+use super::{Dense, Read, check_size, color_of, storage_of};
 use crate::shown::shown;
 
 pub(super) fn read(bytes: &[u8]) -> Read<Dense> {
@@ -66,6 +66,7 @@ pub(super) fn read(bytes: &[u8]) -> Read<Dense> {
         values: number.read(data, field("endian") == Some("big")),
         place: place(field("space directions"), field("space origin"))?,
         storage: storage_of(field("storage"), field("power"))?,
+        color: color_of(field("color"))?,
     })
 }
 

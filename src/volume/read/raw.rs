@@ -7,7 +7,7 @@ use glam::DVec3;
 use serde::Deserialize;
 
 use super::bytes::Number;
-use super::{Dense, Read, check_size, storage_of};
+use super::{Dense, Read, check_size, color_of, storage_of};
 
 #[derive(Deserialize)]
 struct Sheet {
@@ -24,6 +24,8 @@ struct Sheet {
     storage: Option<String>,
     #[serde(default)]
     power: Option<String>,
+    #[serde(default)]
+    color: Option<String>,
 }
 
 pub(super) fn read(path: &Path, bytes: &[u8]) -> Read<Dense> {
@@ -60,5 +62,6 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Read<Dense> {
         values: number.read(data, false),
         place: place.map(|(low, cell)| [DVec3::from(low), DVec3::splat(cell)]),
         storage: storage_of(sheet.storage.as_deref(), sheet.power.as_deref())?,
+        color: color_of(sheet.color.as_deref())?,
     })
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::bytes::Number;
-use super::{Dense, Fault, Read, check_size, storage_of};
+use super::{Dense, Fault, Read, check_size, color_of, storage_of};
 use crate::shown::shown;
 
 pub(super) fn read(bytes: &[u8]) -> Read<Dense> {
@@ -48,6 +48,7 @@ pub(super) fn read(bytes: &[u8]) -> Read<Dense> {
         values: number.read(data, is_big),
         place: Some(place),
         storage: storage_of(note(&header, "storage"), note(&header, "power"))?,
+        color: color_of(note(&header, "color"))?,
     })
 }
 
