@@ -5,11 +5,14 @@ use std::ops::ControlFlow;
 use super::{Renderer, RendererBackend};
 use crate::error::{Error, Result, SceneError};
 use crate::reference::{Tracer, particle_light};
-use crate::scene::{List, Ray, Scene};
+use crate::scene::{List, Method, Ray, Scene};
 use crate::threads;
 
 /// Hears the finished share of the work, 0 to 1, and may stop it.
 type Progress<'a> = dyn FnMut(f32) -> ControlFlow<()> + 'a;
+
+/// So many rays a device gets at once: memory for them is used again, and stays in the caches.
+const AT_ONCE: usize = 1 << 16;
 
 /// So many rays of the reference are integrated before it is asked whether to go on: some tenths of a second.
 const BAND: usize = 4096;
@@ -73,19 +76,33 @@ impl Renderer {
         rays: &[Ray],
         progress: &mut Progress<'_>,
     ) -> Result<Vec<[f64; 3]>> {
-        let pixels = match &mut self.backend {
-            RendererBackend::OpenCl(renderer) => renderer.integrate(scene, rays, progress)?,
-            RendererBackend::Several(renderer) => renderer.integrate(scene, rays, progress)?,
-            RendererBackend::Reference { .. } => {
-                return integrate_on_host(scene, rays, progress);
-            }
+        if let RendererBackend::Reference { .. } = &self.backend {
+            return integrate_on_host(scene, rays, progress);
+        }
+        // Random numbers are those of places in the whole list.
+        let at_once = match scene.integration.method {
+            Method::Jittered { .. } => rays.len().max(1),
+            _ => AT_ONCE,
         };
-        let measure = |ray: &Ray| scene.integration.scale(ray.span.length());
-        let colors = pixels.iter().zip(rays).map(|(pixel, ray)| {
-            let [red, green, blue, _] = *pixel;
-            [red, green, blue].map(|light| measure(ray) * f64::from(light))
-        });
-        Ok(colors.collect())
+        let mut lights = Vec::with_capacity(rays.len());
+        for part in rays.chunks(at_once) {
+            if !lights.is_empty() {
+                self.cost_before = self.cost_before.then(self.cost_of_part());
+            }
+            let (before, of_part) = (lights.len() as f32, part.len() as f32);
+            let report = &mut |share: f32| progress((before + share * of_part) / rays.len() as f32);
+            let pixels = match &mut self.backend {
+                RendererBackend::OpenCl(renderer) => renderer.integrate(scene, part, report)?,
+                RendererBackend::Several(renderer) => renderer.integrate(scene, part, report)?,
+                RendererBackend::Reference { .. } => Vec::new(), // has returned
+            };
+            let measure = |ray: &Ray| scene.integration.scale(ray.span.length());
+            lights.extend(pixels.iter().zip(part).map(|(pixel, ray)| {
+                let [red, green, blue, _] = *pixel;
+                [red, green, blue].map(|light| measure(ray) * f64::from(light))
+            }));
+        }
+        Ok(lights)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Renderers, which keep their kernels and buffers from frame to frame.
 
+use std::borrow::Cow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
 
@@ -93,21 +94,22 @@ fn check_target(py: Python<'_>, shape: &[usize], scene: &Scene) -> PyResult<()> 
     }
 }
 
-/// Returns rows of three numbers as vectors.
-fn vectors(py: Python<'_>, place: &str, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<DVec3>> {
+/// Returns rows of three numbers, copied unless they lie one behind the other.
+fn points<'a>(
+    py: Python<'_>,
+    place: &str,
+    array: &'a PyReadonlyArray2<'_, f64>,
+) -> PyResult<Cow<'a, [[f64; 3]]>> {
     if array.shape()[1] != 3 {
         let reason = format!("an array of shape {:?}", array.shape());
         return Err(misuse(py, place, &reason, "give one of (n, 3)"));
     }
     Ok(match array.as_slice() {
-        Ok(values) => {
-            let rows = values.chunks_exact(3);
-            rows.map(DVec3::from_slice).collect()
-        }
+        Ok(values) => Cow::Borrowed(values.as_chunks().0),
         Err(_) => {
             let rows = array.as_array();
             let rows = rows.rows().into_iter();
-            rows.map(|row| DVec3::new(row[0], row[1], row[2])).collect()
+            rows.map(|row| [row[0], row[1], row[2]]).collect()
         }
     })
 }
@@ -228,14 +230,14 @@ impl Renderer {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let scene = scene.frame(py, &Overrides::of(overrides)?)?;
-        let (begins, ends) = (
-            vectors(py, "origins", &origins)?,
-            vectors(py, "ends", &ends)?,
-        );
+        let (begins, ends) = (points(py, "origins", &origins)?, points(py, "ends", &ends)?);
         check_pairs(py, ("origins", "ends"), (begins.len(), ends.len()))?;
         let light = self.work(py, progress, |renderer, progress| {
-            let pairs = begins.into_iter().zip(ends);
-            let rays: Vec<Ray> = pairs.map(|(begin, end)| Ray::between(begin, end)).collect();
+            let pairs = begins.iter().zip(ends.iter());
+            let ray = |(begin, end): (&[f64; 3], &[f64; 3])| {
+                Ray::between(DVec3::from_array(*begin), DVec3::from_array(*end))
+            };
+            let rays: Vec<Ray> = pairs.map(ray).collect();
             renderer.integrate_with_progress(&scene, &rays, progress)
         })?;
         rows(py, light)
@@ -250,8 +252,9 @@ impl Renderer {
         overrides: &Bound<'py, PyDict>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let scene = scene.frame(py, &Overrides::of(overrides)?)?;
-        let points = vectors(py, "points", &points)?;
-        let normals = vectors(py, "normals", &normals)?;
+        let vectors = |rows: &[[f64; 3]]| rows.iter().copied().map(DVec3::from_array).collect();
+        let points: Vec<DVec3> = vectors(&self::points(py, "points", &points)?);
+        let normals: Vec<DVec3> = vectors(&self::points(py, "normals", &normals)?);
         check_pairs(py, ("points", "normals"), (points.len(), normals.len()))?;
         let light = self.work(py, None, |renderer, _| {
             renderer.irradiance(&scene, &points, &normals)

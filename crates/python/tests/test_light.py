@@ -79,6 +79,20 @@ def test_rays_get_the_integral_of_the_reference(scene, renderer):
     assert np.array_equal(renderer.integrate(without_camera, [0, -4, 2], ends), light)
 
 
+def test_more_rays_than_a_device_gets_at_once_are_the_same_rays(scene, renderer):
+    ends = np.random.default_rng(2).normal(size=(150_001, 3))
+    told = []
+    light = renderer.integrate(scene, [0, -4, 2], ends, progress=told.append)
+    assert told == sorted(told) and told[-1] == 1.0
+    assert renderer.last_cost["integrals"] == len(ends)
+    some = np.r_[0:100, 65_500:65_600, len(ends) - 100 : len(ends)]
+    assert worst(light[some], ew.integrate(scene, [0, -4, 2], ends[some], reference=True)) < WORST
+    assert worst(light[some], light[some + 1 - 2 * (some > 0)]) > WORST
+    backwards = renderer.integrate(scene, [0, -4, 2], ends[::-1])  # an array that doesn't lie in C's order
+    assert worst(backwards[::-1], light) < WORST
+    assert renderer.integrate(scene, np.zeros((0, 3)), np.zeros((0, 3))).shape == (0, 3)
+
+
 def test_a_sphere_has_the_integral_that_is_known(renderer):
     """A point of 1 / d^2 seen past at the distance h, along the whole line: pi / h."""
     scene = {"sphere": [{"coefficient": 1.0}]}
