@@ -1,11 +1,12 @@
 """The native half of the package."""
 
+from collections.abc import Mapping
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-_Overrides = Dict[str, Any]
+_Overrides = Mapping[str, object]
 _Progress = Optional[Callable[[float], object]]
 _Record = Dict[str, Any]
 

@@ -15,6 +15,9 @@ from ._scene import open_scene
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+    from typing_extensions import Unpack
+
+    from ._overrides import Overrides
 
 
 class Picture:
@@ -73,7 +76,7 @@ def _light(radiance: "ArrayLike") -> "NDArray[np.float32]":
     return light
 
 
-def tone_map(radiance: "ArrayLike", scene: Any = None, **overrides: Any) -> Picture:
+def tone_map(radiance: "ArrayLike", scene: Any = None, **overrides: "Unpack[Overrides]") -> Picture:
     """Makes a picture for screens of light, as the ``display`` of a scene says: exposure, curve, bloom, background.
 
     Args:
@@ -90,7 +93,7 @@ def tone_map(radiance: "ArrayLike", scene: Any = None, **overrides: Any) -> Pict
 
 
 def save(
-    path: "Union[str, os.PathLike[str]]", radiance: "ArrayLike", scene: Any = None, **overrides: Any
+    path: "Union[str, os.PathLike[str]]", radiance: "ArrayLike", scene: Any = None, **overrides: "Unpack[Overrides]"
 ) -> None:
     """Writes light to a file whose ending chooses: ``.exr`` (linear, float32), or ``.png``, ``.webp``, ``.jpg``.
 

@@ -15,6 +15,9 @@ from ._scene import open_scene
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+    from typing_extensions import Unpack
+
+    from ._overrides import Overrides
 
     Progress = Callable[[float], object]
 
@@ -131,7 +134,7 @@ class Renderer:
         return f"<energywave renderer on {names}>"
 
     def render(
-        self, scene: Any, *, progress: "Optional[Progress]" = None, **overrides: Any
+        self, scene: Any, *, progress: "Optional[Progress]" = None, **overrides: "Unpack[Overrides]"
     ) -> "NDArray[np.float32]":
         """Returns the light of a scene: (height, width, 4) of float32, linear RGBA from the top left, alpha 1.
 
@@ -145,7 +148,7 @@ class Renderer:
         return self._native.render(open_scene(scene), overrides, progress)
 
     def render_into(
-        self, scene: Any, array: "NDArray[np.float32]", *, progress: "Optional[Progress]" = None, **overrides: Any
+        self, scene: Any, array: "NDArray[np.float32]", *, progress: "Optional[Progress]" = None, **overrides: "Unpack[Overrides]"
     ) -> None:
         """Draws into an array that is there: float32, (height, width, 4), in C's order.
 
@@ -166,7 +169,7 @@ class Renderer:
         ends: "ArrayLike",
         *,
         progress: "Optional[Progress]" = None,
-        **overrides: Any,
+        **overrides: "Unpack[Overrides]",
     ) -> "NDArray[np.float64]":
         """Integrates along any rays; the scene's camera plays no part, and may be absent. Surfaces hide nothing.
 
@@ -190,7 +193,7 @@ class Renderer:
         return light.reshape(shape)
 
     def irradiance(
-        self, scene: Any, points: "ArrayLike", normals: "ArrayLike", **overrides: Any
+        self, scene: Any, points: "ArrayLike", normals: "ArrayLike", **overrides: "Unpack[Overrides]"
     ) -> "NDArray[np.float32]":
         """Returns what the cores of a scene's waves cast on points of surfaces.
 
@@ -209,7 +212,7 @@ class Renderer:
         return found.reshape(shape)
 
     def error_map(
-        self, scene: Any, *, progress: "Optional[Progress]" = None, **overrides: Any
+        self, scene: Any, *, progress: "Optional[Progress]" = None, **overrides: "Unpack[Overrides]"
     ) -> "NDArray[np.float32]":
         """Returns the relative error of each channel of each pixel against the float64 reference, (height, width, 3).
 
@@ -220,7 +223,9 @@ class Renderer:
         opened = open_scene(scene)
         overrides.setdefault("antialias", "none")
         image = self.render(opened, **overrides)[..., :3].astype(np.float64)
-        exact = {key: value for key, value in overrides.items() if key not in ("divisions", "sampling")}
+        exact = overrides.copy()
+        exact.pop("divisions", None)
+        exact.pop("sampling", None)
         exact["method"] = "exact"
         truth = _kept(None, True).render(opened, progress=progress, **exact)[..., :3].astype(np.float64)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -236,7 +241,7 @@ class Renderer:
         fps: "Union[float, Fraction]" = 30,
         frames: "Union[int, Iterable[int], None]" = None,
         progress: "Optional[Progress]" = None,
-        **overrides: Any,
+        **overrides: "Unpack[Overrides]",
     ) -> "Animation":
         """Returns an iterator of frames, each as :meth:`render` gives it; frame n is at n / fps seconds.
 
@@ -250,7 +255,7 @@ class Renderer:
         """
         return Animation(self, open_scene(scene), fps, frames, progress, overrides)
 
-    def enqueue(self, scene: Any, target: Any, *, wait_for: Iterable[Any] = (), **overrides: Any) -> Any:
+    def enqueue(self, scene: Any, target: Any, *, wait_for: Iterable[Any] = (), **overrides: "Unpack[Overrides]") -> Any:
         """Enqueues a frame that is drawn into memory of pyopencl's, on a renderer that was made with a ``queue``.
 
         Nothing is read back, and nothing waits but for the compiler, the first time. What comes after it on an in-order
@@ -351,7 +356,7 @@ def _kept(device: Any, reference: bool) -> Renderer:
     return renderers[key]
 
 
-def render(scene: Any, *, device: Any = None, reference: bool = False, **overrides: Any) -> "NDArray[np.float32]":
+def render(scene: Any, *, device: Any = None, reference: bool = False, **overrides: "Unpack[Overrides]") -> "NDArray[np.float32]":
     """Returns the light of a scene: (height, width, 4) of float32, linear RGBA from the top left.
 
     As :meth:`Renderer.render`, by a renderer that is kept for this thread. ``reference=True`` computes in float64, by
@@ -367,7 +372,7 @@ def integrate(
     *,
     device: Any = None,
     reference: bool = False,
-    **overrides: Any,
+    **overrides: "Unpack[Overrides]",
 ) -> "NDArray[np.float64]":
     """Integrates along any rays, as :meth:`Renderer.integrate`: linear RGB, (n, 3) of float64.
 
@@ -383,13 +388,13 @@ def irradiance(
     *,
     device: Any = None,
     reference: bool = False,
-    **overrides: Any,
+    **overrides: "Unpack[Overrides]",
 ) -> "NDArray[np.float32]":
     """Returns what the waves cast on points of surfaces, as :meth:`Renderer.irradiance`: linear RGB, (n, 3)."""
     return _kept(device, reference).irradiance(scene, points, normals, **overrides)
 
 
-def error_map(scene: Any, *, device: Any = None, **overrides: Any) -> "NDArray[np.float32]":
+def error_map(scene: Any, *, device: Any = None, **overrides: "Unpack[Overrides]") -> "NDArray[np.float32]":
     """Returns relative errors against the float64 reference, as :meth:`Renderer.error_map`: (height, width, 3)."""
     return _kept(device, False).error_map(scene, **overrides)
 
