@@ -1,4 +1,4 @@
-"""Writes the stubs of the tables of a scene, from the schema: `python crates/python/stubs.py` with the package installed.
+"""Writes the stubs of the tables of a scene from the schema, where the package is installed.
 
 `--print` prints them instead. A test says whether they are those of the schema.
 """

@@ -41,7 +41,9 @@ def main(output: Path, count: int, size: int) -> None:
         light = ew.render(opened)
         drawn = time.perf_counter()
         errors = ew.error_map(opened, size=(size // 4, size // 4)).max(axis=2)
-        print(f"{count} particles, {size}x{size}: {drawn - begun:.3f} s; float64 took {time.perf_counter() - drawn:.1f} s")
+        print(
+            f"{count} particles, {size}x{size}: {drawn - begun:.3f} s; float64 took {time.perf_counter() - drawn:.1f} s"
+        )
     print(f"relative error of a pixel: median {np.median(errors):.1e}, worst {errors.max():.1e}")
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5.4), layout="constrained")
     left.imshow(ew.tone_map(light, exposure=0).pixels)

@@ -2,8 +2,8 @@
 
     python ray_frames.py [SCENE]
 
-Every frame is a function of its time alone, so that Ray draws those of a lost worker again, and all are there in the end,
-equal to the bit. On machines of one's own: `ray.init("auto")` in the place of the local cluster.
+Every frame is a function of its time alone, so that Ray draws those of a lost worker again, and all are there in the
+end, equal to the bit. On machines of one's own: `ray.init("auto")` in the place of the local cluster.
 """
 
 import os

@@ -42,9 +42,8 @@ pub fn misuse(py: Python<'_>, place: &str, reason: &str, remedy: &str) -> PyErr 
 
 /// Warns of something, in a class of warnings of ours.
 pub fn warn(py: Python<'_>, class: &str, message: &str) -> PyResult<()> {
-    let class = py.import(CLASSES)?.getattr(class)?;
-    let warn = py.import("warnings")?.getattr("warn")?;
-    warn.call1((message, class, 3))?;
+    let warn = py.import(CLASSES)?.getattr("warn")?;
+    warn.call1((class, message))?;
     Ok(())
 }
 

@@ -61,8 +61,8 @@ pub fn enqueue(
             false => HostTarget::Buffer(memory),
         };
         let events: Vec<_> = events.iter().map(|event| *event as *mut c_void).collect();
-        // SAFETY: the objects that own these handles live until this returns; OpenCL retains what its commands use. What
-        // else is done with the target meanwhile is the caller's affair, as with any command of a queue.
+        // SAFETY: the objects that own these handles live until this returns; OpenCL retains what its commands use.
+        // What else is done with the target meanwhile is the caller's affair, as with any command of a queue.
         let event: Event = unsafe { renderer.enqueue(scene, target, &events) }?;
         let handle = event.get() as usize;
         std::mem::forget(event); // the reference goes to the caller

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use energywave::scene::{AnimatedScene, Scene};
 use energywave::{Error, Result, SceneError};
+use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -114,6 +115,29 @@ impl OpenedScene {
         let overrides = overrides.map_or(Ok(Overrides::default()), Overrides::of)?;
         let image = self.frame(py, &overrides)?.image;
         Ok((image.width, image.height))
+    }
+
+    /// Where the rays through the centres of its pixels begin, and where they end: each (height, width, 3), world
+    /// units.
+    fn rays<'py>(
+        &self,
+        py: Python<'py>,
+        overrides: &Bound<'py, PyDict>,
+    ) -> PyResult<[Bound<'py, PyArray3<f64>>; 2]> {
+        let scene = self.frame(py, &Overrides::of(overrides)?)?;
+        let (plane, image) = (scene.view_plane(), scene.image);
+        let (mut origins, mut ends) = (Vec::new(), Vec::new());
+        for row in 0..image.height {
+            for column in 0..image.width {
+                let ray = plane.ray(column, row);
+                origins.push(ray.origin.to_array());
+                ends.push((ray.origin + ray.span).to_array());
+            }
+        }
+        let shape = [image.height as usize, image.width as usize, 3];
+        let shaped =
+            |points: Vec<[f64; 3]>| PyArray1::from_vec(py, points.into_flattened()).reshape(shape);
+        Ok([shaped(origins)?, shaped(ends)?])
     }
 
     /// Whether anything in it moves.

@@ -46,8 +46,8 @@ impl Watch {
     }
 }
 
-/// Works without Python's lock; `told` hears how far it is, a number from 0 to 1. An exception in there, or Ctrl-C, stops
-/// the work and goes on from here.
+/// Works without Python's lock; `told` hears how far it is, a number from 0 to 1. An exception in there, or Ctrl-C,
+/// stops the work and goes on from here.
 pub fn watched<T: Send>(
     py: Python<'_>,
     told: Option<Py<PyAny>>,

@@ -45,7 +45,9 @@ def test_a_fault_of_a_file_has_line_and_column(tmp_path):
 
 def test_other_faults_have_classes_that_python_knows(scene, tmp_path):
     error = fault(scene, device="no such device")
-    assert error.code == "no-such-device" and isinstance(error, (RuntimeError, LookupError)) and "devices" in error.remedy
+    assert (
+        error.code == "no-such-device" and isinstance(error, (RuntimeError, LookupError)) and "devices" in error.remedy
+    )
     assert fault(scene, method="simson").place == "method"
     assert fault(scene, divisions=3).place == "integration.divisions"
     assert fault(scene, size=(0, 4)).place == "image.width"
@@ -71,6 +73,12 @@ def test_exceptions_come_whole_out_of_another_process(scene):
     assert (other.code, other.place, other.remedy) == (error.code, error.place, error.remedy)
 
 
+def test_what_was_hardly_meant_is_a_warning(renderer):
+    with pytest.warns(ew.SceneWarning) as caught:
+        renderer.render({"camera": CAMERA, "sphere": [{"coefficient": 0}]}, size=(16, 12))
+    assert caught[0].filename == __file__ and "sphere[0]" in str(caught[0].message)
+
+
 @pytest.mark.parametrize("reference", [False, True])
 def test_an_exception_in_a_frame_leaves_the_renderer_usable(scene, reference):
     renderer = ew.Renderer(reference=reference)
@@ -87,7 +95,9 @@ def test_an_exception_in_a_frame_leaves_the_renderer_usable(scene, reference):
         lambda: renderer.render(scene, progress=stop, **long),
         lambda: renderer.render_into(scene, array, progress=stop, **long),
         lambda: next(renderer.animate(scene, frames=3, progress=stop, **long)),
-        lambda: renderer.integrate(scene, [0, -4, 2], np.random.default_rng(1).normal(size=(100_000, 3)), progress=stop),
+        lambda: renderer.integrate(
+            scene, [0, -4, 2], np.random.default_rng(1).normal(size=(100_000, 3)), progress=stop
+        ),
     ]:
         told.clear()
         with pytest.raises(LookupError, match="that is enough"):
@@ -146,6 +156,7 @@ assert light.shape == (12, 16, 4) and light[..., 0].max() > 0
 found = ew.devices()
 assert [device.type for device in found] == ["reference"] and found.problem, found
 assert [warning.category for warning in caught] == [ew.NoDeviceWarning], caught
+assert caught[0].filename == "<string>", caught  # here, and not in the package
 ew.save("light.png", light)
 """
 

@@ -79,6 +79,15 @@ def test_rays_get_the_integral_of_the_reference(scene, renderer):
     assert np.array_equal(renderer.integrate(without_camera, [0, -4, 2], ends), light)
 
 
+def test_the_rays_of_pixels_get_the_light_of_pixels(scene, renderer):
+    begins, ends = ew.rays(scene)
+    assert begins.shape == ends.shape == (48, 64, 3)
+    light = ew.integrate(scene, begins, ends, reference=True)
+    drawn = renderer.render(scene, antialias="none")[..., :3]
+    assert worst(drawn, light) < WORST
+    assert worst(drawn, light[::-1]) > WORST  # the first row is the top one
+
+
 def test_more_rays_than_a_device_gets_at_once_are_the_same_rays(scene, renderer):
     ends = np.random.default_rng(2).normal(size=(150_001, 3))
     told = []

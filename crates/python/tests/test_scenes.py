@@ -1,6 +1,7 @@
 """Are there classes for all that a scene can have, and do they hold what they are given?"""
 
 import copy
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -64,7 +65,7 @@ def test_tables_are_values(scene):
     }  # fmt: skip
     other = torus.replace(major_radius=1.1, color=None)
     assert other != torus and other.color == [1, 1, 1] and torus.major_radius == 0.9
-    assert copy.deepcopy(scene) == scene
+    assert copy.deepcopy(scene) == scene == pickle.loads(pickle.dumps(scene))
     segment = ew.Segment(from_=[0, 0, 0], to=[1, 0, 0], radius=ew.Track(times=[0, 1], values=[0.1, 0.2]))
     assert segment.to_dict()["from"] == [0, 0, 0] and segment.to_dict()["radius"]["values"] == [0.1, 0.2]
 

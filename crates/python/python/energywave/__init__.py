@@ -11,6 +11,8 @@ OpenCL the built-in float64 reference draws, and a :class:`NoDeviceWarning` says
 """
 
 from ._energywave import OpenedScene
+from ._animation import Animation
+from ._devices import Device, Devices, devices
 from ._errors import (
     DeviceError,
     Error,
@@ -25,7 +27,15 @@ from ._errors import (
     UnsupportedError,
 )
 from ._picture import Picture, save, tone_map
-from ._render import Animation, Device, Devices, Renderer, animate, devices, error_map, integrate, irradiance, render
+from ._render import (
+    Renderer,
+    animate,
+    error_map,
+    integrate,
+    irradiance,
+    rays,
+    render,
+)
 from ._scene import Scene, open_scene
 from ._tables import *  # noqa: F403
 from ._tables import Table
@@ -37,6 +47,6 @@ __all__ = [
     "Animation", "Device", "DeviceError", "Devices", "Error", "HostError", "InputError", "NoDeviceWarning",
     "NoSuchDeviceError", "OpenedScene", "OutOfMemoryError", "OutputError", "Picture", "Renderer", "Scene", "SceneError",
     "SceneWarning", "Table", "UnsupportedError", "animate", "devices", "error_map", "integrate", "irradiance",
-    "open_scene", "render", "save", "tone_map",
+    "open_scene", "rays", "render", "save", "tone_map",
 ]  # fmt: skip
 __all__ += _tables_all

@@ -5,6 +5,9 @@ Every exception derives from :class:`Error` and from the built-in class that Pyt
 
 from __future__ import annotations
 
+import os
+import sys
+import warnings
 from typing import Any, Optional, Tuple
 
 
@@ -86,3 +89,11 @@ def make(code: str, message: str, place: Optional[str], remedy: str) -> Error:
     error = _CLASSES.get(code, Error)(message)
     error.code, error.place, error.remedy = code, place, remedy
     return error
+
+
+def warn(category: str, message: str) -> None:
+    """Warns of something where the user's code calls the package."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == os.path.dirname(__file__):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(message, {"SceneWarning": SceneWarning, "NoDeviceWarning": NoDeviceWarning}[category], level + 1)

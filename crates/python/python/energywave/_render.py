@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
-from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _energywave
+from ._animation import Animation
+from ._devices import Device
 from ._errors import make
 from ._scene import open_scene
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from numpy.typing import ArrayLike, NDArray
     from typing_extensions import Unpack
 
@@ -22,62 +24,16 @@ if TYPE_CHECKING:
     Progress = Callable[[float], object]
 
 
-@dataclass(frozen=True)
-class Device:
-    """A device that can draw.
-
-    Attributes:
-        index: its number, which may change when drivers are installed.
-        type: ``gpu``, ``cpu``, ``accelerator``, or ``reference``, which is built in and needs no OpenCL.
-        memory_bytes, max_allocation_bytes: of its memory, and of the largest buffer.
-        lanes: rays that a work-item carries side by side.
-        default: whether it draws where no device is named.
-    """
-
-    index: int
-    name: str
-    type: str
-    platform: str
-    version: str
-    driver: str
-    compute_units: int
-    memory_bytes: int
-    max_allocation_bytes: int
-    lanes: int
-    tile_workers: int
-    default: bool
-
-
-class Devices(List[Device]):
-    """All devices; the last is the built-in reference.
-
-    Attributes:
-        problem: why there is no OpenCL device, and what to install; None where there is one.
-        absent: of every driver without a device that can draw why, a line each.
-    """
-
-    problem: Optional[str] = None
-    absent: Tuple[str, ...] = ()
-
-
-def devices() -> Devices:
-    """Looks for devices: GPUs, other OpenCL devices, the built-in reference."""
-    records, problem, absent = _energywave.devices()
-    found = Devices(Device(**record) for record in records)
-    found.problem, found.absent = problem, tuple(absent)
-    return found
-
-
 class Renderer:
     """Draws scenes on a device; kernels and buffers are kept from frame to frame.
 
-    Kernels are built, for seconds, when a scene first needs them; later frames allocate nothing on the device and upload
-    what changed. Python's lock is released while a frame is drawn, and Ctrl-C stops it; a renderer is as good as new
-    after that, and after every exception. Threads may share one, and wait for each other; with one each they draw at the
-    same time. It doesn't outlive a ``fork``: start processes by ``spawn``.
+    Kernels are built, for seconds, when a scene first needs them; later frames allocate nothing on the device and
+    upload what changed. Python's lock is released while a frame is drawn, and Ctrl-C stops it; a renderer is as good as
+    new after that, and after every exception. Threads may share one, and wait for each other; with one each they draw
+    at the same time. It doesn't outlive a ``fork``: start processes by ``spawn``.
 
-    All methods take a scene as a path, a dictionary, a :class:`Scene`, or what :func:`open_scene` made of one, and these
-    keywords, which replace values of the scene:
+    All methods take a scene as a path, a dictionary, a :class:`Scene`, or what :func:`open_scene` made of one, and
+    these keywords, which replace values of the scene:
 
     ====================  ===========================================================================
     ``size``              width and height in pixels; also ``width``, ``height``
@@ -93,8 +49,8 @@ class Renderer:
     ``progress`` is called with the finished share, 0 to 1, several times a second; an exception in it stops the work.
 
     Args:
-        device: a number of :func:`devices`, a part of a name, ``"gpu"``, ``"cpu"``, ``"all"``; None: what the environment
-            variable ``ENERGYWAVE_DEVICE`` says, else the best, else the built-in reference, with a warning.
+        device: a number of :func:`devices`, a part of a name, ``"gpu"``, ``"cpu"``, ``"all"``; None: what the
+            environment variable ``ENERGYWAVE_DEVICE`` says, else the best, else the built-in reference, with a warning.
         reference: draw by the built-in reference: in float64, by another method, hundreds of times slower.
         queue: a ``pyopencl.CommandQueue`` whose context and device are to be used, in the place of ``device``.
 
@@ -148,13 +104,18 @@ class Renderer:
         return self._native.render(open_scene(scene), overrides, progress)
 
     def render_into(
-        self, scene: Any, array: "NDArray[np.float32]", *, progress: "Optional[Progress]" = None, **overrides: "Unpack[Overrides]"
+        self,
+        scene: Any,
+        array: "NDArray[np.float32]",
+        *,
+        progress: "Optional[Progress]" = None,
+        **overrides: "Unpack[Overrides]",
     ) -> None:
         """Draws into an array that is there: float32, (height, width, 4), in C's order.
 
         Raises:
-            UnsupportedError: for an array of another shape or order. Otherwise as :meth:`render`; what the array holds is
-                undefined then.
+            UnsupportedError: for an array of another shape or order. Otherwise as :meth:`render`; what the array holds
+                is undefined then.
         """
         if not isinstance(array, np.ndarray) or array.dtype != np.float32 or array.ndim != 3:
             found = f"{array.dtype} of {array.ndim} axes" if isinstance(array, np.ndarray) else type(array).__name__
@@ -202,7 +163,8 @@ class Renderer:
             normals: of any length but zero, likewise, or one for all points.
 
         Returns:
-            Irradiance, linear RGB, (n, 3) of float32. A matt surface of the albedo a has the radiance a / pi times that.
+            Irradiance, linear RGB, (n, 3) of float32. A matt surface of the albedo a has the radiance a / pi times
+            that.
         """
         points, normals = np.broadcast_arrays(_points("points", points), _points("normals", normals))
         shape = points.shape
@@ -255,7 +217,9 @@ class Renderer:
         """
         return Animation(self, open_scene(scene), fps, frames, progress, overrides)
 
-    def enqueue(self, scene: Any, target: Any, *, wait_for: Iterable[Any] = (), **overrides: "Unpack[Overrides]") -> Any:
+    def enqueue(
+        self, scene: Any, target: Any, *, wait_for: Iterable[Any] = (), **overrides: "Unpack[Overrides]"
+    ) -> Any:
         """Enqueues a frame that is drawn into memory of pyopencl's, on a renderer that was made with a ``queue``.
 
         Nothing is read back, and nothing waits but for the compiler, the first time. What comes after it on an in-order
@@ -279,63 +243,6 @@ class Renderer:
         return pyopencl.Event.from_int_ptr(event, retain=False)
 
 
-class Animation(Iterator["NDArray[np.float32]"]):
-    """The frames of a scene that moves, drawn one after the other as they are asked for.
-
-    Attributes:
-        frames: their numbers.
-        fps: frames a second.
-    """
-
-    #: A loop may end so far from a whole number of frames before its seam is seen.
-    _SEAM = Fraction(1, 1000)
-
-    def __init__(self, renderer: Renderer, opened: Any, fps: Any, frames: Any, progress: Any, overrides: Any) -> None:
-        self.fps = fps if isinstance(fps, Fraction) else Fraction(fps).limit_denominator(100_000)
-        if not 0 < self.fps <= 100_000:
-            remedy = "more than 0 and at most 100000 frames a second"
-            raise make("unsupported", f"fps: {fps}; {remedy}", "fps", remedy)
-        self._renderer, self._opened, self._progress, self._overrides = renderer, opened, progress, overrides
-        if frames is None:
-            frames = self._last(opened) + 1
-        self.frames = range(frames) if isinstance(frames, int) else list(frames)
-        self._next = 0
-
-    def _last(self, opened: Any) -> int:
-        if opened.span is None:
-            remedy = "name frames=, or give the scene a [time] loop"
-            what = "moves without end" if opened.is_animated else "doesn't move"
-            raise make("unsupported", f"frames: the scene {what}; {remedy}", "frames", remedy)
-        seconds, loops = opened.span
-        count = Fraction(seconds) * self.fps
-        is_whole = abs(count - round(count)) <= self._SEAM
-        if loops and is_whole:
-            return max(round(count) - 1, 0)
-        return round(count) if is_whole else int(count)
-
-    def __len__(self) -> int:
-        return len(self.frames) - self._next
-
-    def __iter__(self) -> "Animation":
-        return self
-
-    def __next__(self) -> "NDArray[np.float32]":
-        if self._next >= len(self.frames):
-            raise StopIteration
-        frame = self.draw(self.frames[self._next])
-        self._next += 1
-        return frame
-
-    def time_of(self, frame: int) -> float:
-        """Returns when a frame is, seconds."""
-        return float(frame * self.fps.denominator / self.fps.numerator)
-
-    def draw(self, frame: int) -> "NDArray[np.float32]":
-        """Draws the frame of a number; each is a function of its time alone."""
-        overrides = dict(self._overrides, t=self.time_of(frame))
-        return self._renderer._native.render_frame(self._opened, float(self.fps), overrides, self._progress)
-
-
 def _points(name: str, array: "ArrayLike") -> "NDArray[np.float64]":
     points = np.asarray(array, np.float64)
     if points.ndim == 0 or points.shape[-1] != 3:
@@ -356,11 +263,13 @@ def _kept(device: Any, reference: bool) -> Renderer:
     return renderers[key]
 
 
-def render(scene: Any, *, device: Any = None, reference: bool = False, **overrides: "Unpack[Overrides]") -> "NDArray[np.float32]":
+def render(
+    scene: Any, *, device: Any = None, reference: bool = False, **overrides: "Unpack[Overrides]"
+) -> "NDArray[np.float32]":
     """Returns the light of a scene: (height, width, 4) of float32, linear RGBA from the top left.
 
     As :meth:`Renderer.render`, by a renderer that is kept for this thread. ``reference=True`` computes in float64, by
-    another method, and rounds the light to float32.
+    another method, and rounds the light to float32 (:func:`rays` says how to get all of its digits).
     """
     return _kept(device, reference).render(scene, **overrides)
 
@@ -379,6 +288,14 @@ def integrate(
     ``reference=True`` computes in float64 throughout, to about 1e-10.
     """
     return _kept(device, reference).integrate(scene, origins, ends, **overrides)
+
+
+def rays(scene: Any, **overrides: "Unpack[Overrides]") -> "Tuple[NDArray[np.float64], NDArray[np.float64]]":
+    """Returns where the rays through the centres of a scene's pixels begin, and where they end, world units.
+
+    Each is (height, width, 3). ``integrate(scene, *rays(scene), reference=True)`` is the image in float64.
+    """
+    return open_scene(scene).rays(overrides)
 
 
 def irradiance(

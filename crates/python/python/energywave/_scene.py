@@ -31,8 +31,8 @@ class Scene(Table):
         scene.sphere.append(Sphere(center=[0, 0, 1], coefficient=0.01))
 
     Tables of which there can be several (``torus``, ``sphere``, ...) are lists, the others are one table or None.
-    In the place of any table a dictionary may stand, of any number, vector, colour or list of such a ``Track``. Files that
-    a scene names are from the working folder, or from the folder of the file that the scene was loaded from.
+    In the place of any table a dictionary may stand, of any number, vector, colour or list of such a ``Track``. Files
+    that a scene names are from the working folder, or from the folder of the file that the scene was loaded from.
     """
 
     _name = ""
@@ -107,7 +107,6 @@ class Scene(Table):
         share = min(1.0, NOTEBOOK_PIXELS / max(width, height))
         size = (max(1, round(width * share)), max(1, round(height * share)))
         return tone_map(render(opened, size=size), opened)._repr_png_()
-
 
 
 def _table_of(schema: Dict[str, Any], value: Any) -> Any:
