@@ -210,18 +210,7 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::render`], and [`Error::Unsupported`] if the slice has another length.
     pub fn render_into(&mut self, scene: &Scene, target: &mut [f32]) -> Result<()> {
-        self.check(scene)?;
-        let needed = 4 * scene.image.pixels();
-        if target.len() != needed {
-            return Err(Error::Unsupported(format!(
-                "render_into: {} values given, {}x{} RGBA pixels are {needed}",
-                target.len(),
-                scene.image.width,
-                scene.image.height
-            )));
-        }
-        let all = whole(scene, target, self.bloom_of(scene));
-        self.draw(scene, all, &mut |_| ControlFlow::Continue(()))
+        self.render_into_with_progress(scene, target, &mut |_| ControlFlow::Continue(()))
     }
 
     /// Renders some rows of the scene's image into the caller's memory, such as a part of a larger image: linear RGBA

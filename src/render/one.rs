@@ -180,16 +180,20 @@ impl DeviceRenderer {
     }
 
     /// Returns linear RGBA along single rays; light is measured over the parameter s.
-    pub(crate) fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<Pixel>> {
+    pub(crate) fn integrate(
+        &mut self,
+        scene: &Scene,
+        rays: &[Ray],
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<Pixel>> {
         let plan = self.engines.plan_rays(&self.compute, scene, rays)?;
         let mut radiances = vec![[0.0; 4]; rays.len()];
         let mut read = |film: &mut Film, compute: &Compute, band: Range<usize>| {
             film.read(compute, &mut radiances[band])
         };
-        let nothing = &mut |_: f32| ControlFlow::Continue(());
         let all = 0..rays.len() as u32;
         self.bloom_cost = FrameCost::default();
-        self.draw_bands(&plan, all, plan.grain(), None, &mut read, nothing)?;
+        self.draw_bands(&plan, all, plan.grain(), None, &mut read, progress)?;
         Ok(radiances)
     }
 

@@ -1,9 +1,21 @@
 //! Light along single rays.
 
+use std::ops::ControlFlow;
+
 use super::{Renderer, RendererBackend};
-use crate::error::{Result, SceneError};
+use crate::error::{Error, Result, SceneError};
 use crate::reference::{Tracer, particle_light};
-use crate::scene::{List, Ray, Scene};
+use crate::scene::{List, Method, Ray, Scene};
+use crate::threads;
+
+/// Hears the finished share of the work, 0 to 1, and may stop it.
+type Progress<'a> = dyn FnMut(f32) -> ControlFlow<()> + 'a;
+
+/// So many rays a device gets at once: memory for them is used again, and stays in the caches.
+const AT_ONCE: usize = 1 << 16;
+
+/// So many rays of the reference are integrated before it is asked whether to go on: some tenths of a second.
+const BAND: usize = 4096;
 
 impl Renderer {
     /// Integrates along single rays: linear RGB, over the parameter or the length of each ray as the scene's measure
@@ -17,6 +29,20 @@ impl Renderer {
     /// As [`Renderer::render`]; [`Error::Scene`](crate::Error::Scene) also for a ray that [`Ray::fault`] refuses;
     /// [`Error::Unsupported`](crate::Error::Unsupported) for a scene with volumes.
     pub fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<[f64; 3]>> {
+        self.integrate_with_progress(scene, rays, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Integrates as [`Renderer::integrate`] does; `progress` is told the finished share of the sources' light, 0 to 1,
+    /// and may stop it.
+    ///
+    /// # Errors
+    /// As there, and [`Error::Interrupted`](crate::Error::Interrupted) if `progress` stopped the work.
+    pub fn integrate_with_progress(
+        &mut self,
+        scene: &Scene,
+        rays: &[Ray],
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<[f64; 3]>> {
         self.check(scene)?;
         for (index, ray) in rays.iter().enumerate() {
             if let Some(fault) = ray.fault() {
@@ -25,7 +51,7 @@ impl Renderer {
         }
         scene.check_rays_alone()?;
         if !scene.has_particles() {
-            return self.integrate_sources(scene, rays);
+            return self.integrate_sources(scene, rays, progress);
         }
         let simulated = self.simulated_waves(scene)?;
         let given = simulated.as_ref().unwrap_or(scene);
@@ -34,7 +60,7 @@ impl Renderer {
             light_elements: List::new(),
             ..given.clone()
         };
-        let mut lights = self.integrate_sources(&sources, rays)?;
+        let mut lights = self.integrate_sources(&sources, rays, progress)?;
         for (light, of_particles) in lights.iter_mut().zip(particle_light(given, rays)) {
             for (light, part) in light.iter_mut().zip(of_particles.to_array()) {
                 *light += part;
@@ -44,21 +70,62 @@ impl Renderer {
     }
 
     /// Integrates along valid rays in a valid scene without particles.
-    fn integrate_sources(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<[f64; 3]>> {
-        let pixels = match &mut self.backend {
-            RendererBackend::OpenCl(renderer) => renderer.integrate(scene, rays)?,
-            RendererBackend::Several(renderer) => renderer.integrate(scene, rays)?,
-            RendererBackend::Reference { .. } => {
-                let tracer = Tracer::new(scene, scene.integration.method);
-                let radiance = |(ray, number)| tracer.radiance(ray, 1.0, number).to_array();
-                return Ok(rays.iter().zip(0..).map(radiance).collect());
-            }
+    fn integrate_sources(
+        &mut self,
+        scene: &Scene,
+        rays: &[Ray],
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<[f64; 3]>> {
+        if let RendererBackend::Reference { .. } = &self.backend {
+            return integrate_on_host(scene, rays, progress);
+        }
+        // Random numbers are those of places in the whole list.
+        let at_once = match scene.integration.method {
+            Method::Jittered { .. } => rays.len().max(1),
+            _ => AT_ONCE,
         };
-        let measure = |ray: &Ray| scene.integration.scale(ray.span.length());
-        let colors = pixels.iter().zip(rays).map(|(pixel, ray)| {
-            let [red, green, blue, _] = *pixel;
-            [red, green, blue].map(|light| measure(ray) * f64::from(light))
-        });
-        Ok(colors.collect())
+        let mut lights = Vec::with_capacity(rays.len());
+        for part in rays.chunks(at_once) {
+            if !lights.is_empty() {
+                self.cost_before = self.cost_before.then(self.cost_of_part());
+            }
+            let (before, of_part) = (lights.len() as f32, part.len() as f32);
+            let report = &mut |share: f32| progress((before + share * of_part) / rays.len() as f32);
+            let pixels = match &mut self.backend {
+                RendererBackend::OpenCl(renderer) => renderer.integrate(scene, part, report)?,
+                RendererBackend::Several(renderer) => renderer.integrate(scene, part, report)?,
+                RendererBackend::Reference { .. } => Vec::new(), // has returned
+            };
+            let measure = |ray: &Ray| scene.integration.scale(ray.span.length());
+            lights.extend(pixels.iter().zip(part).map(|(pixel, ray)| {
+                let [red, green, blue, _] = *pixel;
+                [red, green, blue].map(|light| measure(ray) * f64::from(light))
+            }));
+        }
+        Ok(lights)
     }
+}
+
+/// Integrates by the reference, on all cores.
+fn integrate_on_host(
+    scene: &Scene,
+    rays: &[Ray],
+    progress: &mut Progress<'_>,
+) -> Result<Vec<[f64; 3]>> {
+    let tracer = Tracer::new(scene, scene.integration.method);
+    let mut lights = vec![[0.0; 3]; rays.len()];
+    for (band, lights) in lights.chunks_mut(BAND).enumerate() {
+        let first = band * BAND;
+        threads::for_each_chunk(lights, 1, |index, light| {
+            let number = first + index;
+            light[0] = tracer
+                .radiance(&rays[number], 1.0, number as u32)
+                .to_array();
+        });
+        let done = first + lights.len();
+        if progress(done as f32 / rays.len() as f32).is_break() {
+            return Err(Error::Interrupted);
+        }
+    }
+    Ok(lights)
 }

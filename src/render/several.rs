@@ -137,8 +137,13 @@ impl SeveralRenderer {
     }
 
     /// Integrates on the first device.
-    pub(crate) fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<[f32; 4]>> {
-        let traced = self.renderers[0].integrate(scene, rays)?;
+    pub(crate) fn integrate(
+        &mut self,
+        scene: &Scene,
+        rays: &[Ray],
+        progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
+    ) -> Result<Vec<[f32; 4]>> {
+        let traced = self.renderers[0].integrate(scene, rays, progress)?;
         self.cost = self.renderers[0].cost();
         Ok(traced)
     }

@@ -81,7 +81,16 @@ impl AnimatedScene {
     /// [`Error::Scene`] with the key; faults of the syntax have line and column too.
     #[cfg(feature = "json")]
     pub fn from_json(text: impl Into<String>) -> Result<Self> {
-        Document::read(true, text.into(), None, Path::new("")).map(Self::of)
+        Self::from_json_in(text, "")
+    }
+
+    /// Reads a scene in JSON; files that it names are from a folder.
+    ///
+    /// # Errors
+    /// As [`AnimatedScene::from_json`].
+    #[cfg(feature = "json")]
+    pub fn from_json_in(text: impl Into<String>, folder: impl AsRef<Path>) -> Result<Self> {
+        Document::read(true, text.into(), None, folder.as_ref()).map(Self::of)
     }
 
     /// Reads what a pipe brings, as [`Scene::from_reader_with`] does.

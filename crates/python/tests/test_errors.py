@@ -1,0 +1,168 @@
+"""Are faults exceptions that say what, where, and what to do; and is a renderer as good as new after them?"""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import energywave as ew
+import numpy as np
+import pytest
+from conftest import ring
+
+CAMERA = {"eye": [0, -4, 2], "target": [0, 0, 0]}
+
+
+def fault(scene, **keywords):
+    with pytest.raises(ew.Error) as raised:
+        ew.render(scene, **keywords)
+    return raised.value
+
+
+def test_a_fault_of_a_dictionary_has_the_key_as_its_place():
+    error = fault({"camera": CAMERA, "torus": [{"major_radius": 1}, {"major_radius": -1}]})
+    assert (error.code, error.place) == ("scene", "torus[1].major_radius")
+    assert isinstance(error, ew.SceneError) and isinstance(error, ValueError) and error.remedy
+    error = fault({"camera": CAMERA, "torus": [{"major_radius": 1, "coeficient": 2}]})
+    assert "coefficient" in str(error) and error.place.startswith("torus[0]")
+    error = fault({"camera": {"eye": [0, -4, float("nan")], "target": [0, 0, 0]}})
+    assert error.place == "camera.eye[2]"
+    error = fault({"camera": CAMERA, "sphere": [{"center": object()}]})
+    assert error.place == "sphere[0].center"
+
+
+def test_a_fault_of_a_file_has_line_and_column(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text("[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n[[torus]]\nmajor_radius = -1\n")
+    error = fault(file)
+    assert error.place == f"{file}:5:16" and error.code == "scene"
+    error = fault(tmp_path / "none.toml")
+    assert error.code == "input" and isinstance(error, OSError) and error.place.endswith("none.toml")
+
+
+def test_other_faults_have_classes_that_python_knows(scene, tmp_path):
+    error = fault(scene, device="no such device")
+    assert (
+        error.code == "no-such-device" and isinstance(error, (RuntimeError, LookupError)) and "devices" in error.remedy
+    )
+    assert fault(scene, method="simson").place == "method"
+    assert fault(scene, divisions=3).place == "integration.divisions"
+    assert fault(scene, size=(0, 4)).place == "image.width"
+    light = ew.render(scene)
+    for name in ["light.gif", "no folder/light.png"]:
+        with pytest.raises(ew.OutputError) as raised:
+            ew.save(tmp_path / name, light)
+        assert isinstance(raised.value, OSError) and raised.value.place.endswith(name)
+    with pytest.raises(ew.UnsupportedError):
+        ew.save(tmp_path / "light.png", light[..., 0])
+    with pytest.raises(ew.UnsupportedError):
+        ew.integrate(scene, [[0, 0]], [[1, 1]])
+    with pytest.raises(ew.SceneError) as raised:
+        ew.integrate(scene, [[0, 0, 0]] * 2, [[0, 0, 1], [0, 0, 0]])
+    assert raised.value.place == "ray 1"
+    assert os.listdir(tmp_path) == []
+
+
+def test_exceptions_come_whole_out_of_another_process(scene):
+    error = fault(scene, divisions=3)
+    other = pickle.loads(pickle.dumps(error))
+    assert type(other) is type(error) and str(other) == str(error)
+    assert (other.code, other.place, other.remedy) == (error.code, error.place, error.remedy)
+
+
+def test_what_was_hardly_meant_is_a_warning(renderer):
+    with pytest.warns(ew.SceneWarning) as caught:
+        renderer.render({"camera": CAMERA, "sphere": [{"coefficient": 0}]}, size=(16, 12))
+    assert caught[0].filename == __file__ and "sphere[0]" in str(caught[0].message)
+
+
+@pytest.mark.parametrize("reference", [False, True])
+def test_an_exception_in_a_frame_leaves_the_renderer_usable(scene, reference):
+    renderer = ew.Renderer(reference=reference)
+    expected = renderer.render(scene, size=(16, 12), antialias="none")
+    told = []
+
+    def stop(share):
+        told.append(share)
+        raise LookupError("that is enough")
+
+    array = np.zeros((400, 600, 4), np.float32)
+    long = dict(size=(600, 400), antialias="none", tolerance=1e-9, sampling="pixels")
+    for call in [
+        lambda: renderer.render(scene, progress=stop, **long),
+        lambda: renderer.render_into(scene, array, progress=stop, **long),
+        lambda: next(renderer.animate(scene, frames=3, progress=stop, **long)),
+        lambda: renderer.integrate(
+            scene, [0, -4, 2], np.random.default_rng(1).normal(size=(100_000, 3)), progress=stop
+        ),
+    ]:
+        told.clear()
+        with pytest.raises(LookupError, match="that is enough"):
+            call()
+        assert len(told) == 1 and 0 <= told[0] <= 1
+        assert np.array_equal(renderer.render(scene, size=(16, 12), antialias="none"), expected)
+
+
+def test_progress_is_told_how_far_it_is(scene, renderer):
+    told = []
+    renderer.render(scene, progress=told.append, size=(600, 400))
+    assert told == sorted(told) and told[-1] == 1.0
+    with pytest.raises(ew.UnsupportedError):  # it would wait for itself
+        renderer.render(scene, progress=lambda share: renderer.render(scene), size=(600, 400))
+    assert renderer.render(scene).shape == (48, 64, 4)
+
+
+def test_ctrl_c_stops_a_frame_at_once(scene):
+    renderer = ew.Renderer(reference=True)
+    timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
+    timer.start()
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        renderer.render(scene, antialias="none", size=(4000, 4000))  # for minutes
+    assert time.monotonic() - begun < 5
+    assert renderer.render(scene, size=(4, 3)).shape == (3, 4, 4)
+
+
+def test_other_threads_run_while_a_frame_is_drawn(scene):
+    """Python's lock is released: a thread counts on while the reference draws."""
+    count, stop = [0], threading.Event()
+
+    def run():
+        while not stop.is_set():
+            count[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    before = count[0]
+    begun = time.monotonic()
+    ew.render(scene, reference=True, antialias="none", size=(256, 192))
+    took, counted = time.monotonic() - begun, count[0] - before
+    stop.set()
+    thread.join()
+    assert counted > 0.1 * took / 0.001 or took < 0.05, (counted, took)
+
+
+WITHOUT_OPENCL = """
+import warnings
+import energywave as ew
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    light = ew.render({"camera": {"eye": [0, -4, 2], "target": [0, 0, 0]}, "sphere": [{}]}, size=(16, 12))
+assert light.shape == (12, 16, 4) and light[..., 0].max() > 0
+found = ew.devices()
+assert [device.type for device in found] == ["reference"] and found.problem, found
+assert [warning.category for warning in caught] == [ew.NoDeviceWarning], caught
+assert caught[0].filename == "<string>", caught  # here, and not in the package
+ew.save("light.png", light)
+"""
+
+
+def test_without_opencl_the_reference_draws_and_says_so(tmp_path):
+    no_vendors = dict(os.environ, OCL_ICD_VENDORS=str(tmp_path / "none"), OPENCL_VENDOR_PATH=str(tmp_path / "none"))
+    no_vendors.pop("ENERGYWAVE_DEVICE", None)
+    subprocess.run([sys.executable, "-c", WITHOUT_OPENCL], check=True, cwd=tmp_path, env=no_vendors)
+    assert (tmp_path / "light.png").stat().st_size > 100
