@@ -93,6 +93,27 @@ impl AnimatedScene {
         Document::read(true, text.into(), None, folder.as_ref()).map(Self::of)
     }
 
+    /// Reads a scene in JSON if it begins with `{`, else in TOML; files that it names are from a folder.
+    ///
+    /// ```
+    /// # fn main() -> energywave::Result<()> {
+    /// use energywave::scene::AnimatedScene;
+    ///
+    /// let text = "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\n[depth]\nfile = 'z.exr'\n";
+    /// let scene = AnimatedScene::from_text(text, "shots/7")?;
+    /// let missing = scene.at(0.0).err().map(|error| error.to_string());
+    /// assert!(missing.is_some_and(|message| message.contains("shots/7/z.exr")));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Scene`] with line, column and key.
+    pub fn from_text(text: impl Into<String>, folder: impl AsRef<Path>) -> Result<Self> {
+        let text = text.into();
+        Document::read(piped::looks_like_json(&text), text, None, folder.as_ref()).map(Self::of)
+    }
+
     /// Reads what a pipe brings, as [`Scene::from_reader_with`] does.
     ///
     /// # Errors

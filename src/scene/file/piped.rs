@@ -53,9 +53,12 @@ pub(super) fn open(mut reader: impl Read, name: &Path) -> Result<Document<'stati
 /// Reads a scene.
 pub(super) fn read(name: &Path, bytes: Vec<u8>) -> Result<Document<'static>> {
     let text = text_of(name, bytes)?;
-    let is_json = text
-        .trim_start_matches('\u{feff}')
+    Document::read(looks_like_json(&text), text, Some(name), Path::new(""))
+}
+
+/// Returns whether a text without an ending is JSON.
+pub(super) fn looks_like_json(text: &str) -> bool {
+    text.trim_start_matches('\u{feff}')
         .trim_start()
-        .starts_with('{');
-    Document::read(is_json, text, Some(name), Path::new(""))
+        .starts_with('{')
 }
