@@ -54,6 +54,7 @@ pub(super) struct Block {
     pub(super) is_shaped: bool,
     pub(super) kinds: Vec<Kind>,
     /// What light is multiplied with before it is tone-mapped.
+    #[cfg(feature = "shaders")]
     pub(super) gain: f32,
 }
 
@@ -95,6 +96,7 @@ impl Block {
             series: Vec::new(),
             is_shaped: false,
             kinds: Vec::new(),
+            #[cfg(feature = "shaders")]
             gain: gain(scene),
         };
         add_kinds(&mut block, &sources, softening2)?;
@@ -203,6 +205,7 @@ fn light([red, green, blue, _]: Row, falloff: Falloff, softening2: f32) -> [Row;
 }
 
 /// Returns 2 to the power of the exposure; what fits a picture is known only when there is one.
+#[cfg(feature = "shaders")]
 fn gain(scene: &Scene) -> f32 {
     match scene.display.exposure {
         Exposure::Stops(stops) => stops.exp2() as f32,
