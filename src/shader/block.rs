@@ -6,6 +6,7 @@ use glam::DVec3;
 use super::UniformField;
 use super::refuse::{no_form, refuse};
 use crate::error::{Result, SceneError};
+#[cfg(feature = "shaders")]
 use crate::image::Exposure;
 use crate::scene::Scene;
 use crate::scene::kinds::for_each_kind;
