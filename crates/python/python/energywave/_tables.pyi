@@ -801,6 +801,7 @@ class Volume(Table):
     file: Union[str, "PathLike[str]"]
     interpolation: Literal["linear", "cubic"]
     light_ball: Union[LightBall, _Tables]
+    method: Literal["volume", "billboard"]
     rotation: _Values
     size: _Values
     slices: str
@@ -813,6 +814,7 @@ class Volume(Table):
         file: Optional[Union[str, "PathLike[str]"]] = None,
         interpolation: Optional[Literal["linear", "cubic"]] = None,
         light_ball: Optional[Union[LightBall, _Tables]] = None,
+        method: Optional[Literal["volume", "billboard"]] = None,
         rotation: Optional[_Values] = None,
         size: Optional[_Values] = None,
         slices: Optional[str] = None,
