@@ -370,6 +370,7 @@ fn change_where_met(options: &str) -> f64 {
         "/scenes/2006-figure-5-3-40.toml"
     );
     let mut scene = Scene::from_file(file).unwrap();
+    scene.beams[0].radius = 0.0;
     (scene.image.width, scene.image.height) = (128, 128);
     scene.integration.antialias = Antialias::Footprint;
     let mut renderer = renderer(device().lanes, options);
