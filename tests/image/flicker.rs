@@ -86,7 +86,11 @@ fn what_a_camera_pans_over_neither_pops_nor_flickers() {
         // Of the other hardly anything is smooth.
         assert!(pop(&coarse, &pixels) > MOST_POP || name == "nova", "{name}");
     }
-    let rays = pan("nova").into_iter().map(|mut frame| {
+    let nova = pan("nova");
+    let pixels = draw(&nova, Sampling::Pixels, "");
+    let sudden = draw(&nova, Sampling::Tiles, "-DPASSES_FROM=0.9999f");
+    assert!(pop(&sudden, &pixels) > MOST_POP);
+    let rays = nova.into_iter().map(|mut frame| {
         frame.integration.antialias = Antialias::None;
         frame
     });

@@ -35,7 +35,9 @@
 #define QUARTERED_FROM (4.0f * HALVED_FROM)
 #define BEND_DOUBT 0.5f
 // From so much of that on the cuts count, at first little.
+#ifndef PASSES_FROM // a test cuts at once
 #define PASSES_FROM 0.75f
+#endif
 // So little of the way to a line lies along it by rounding: a ray that meets a core is led away from it, not along it.
 #ifndef ALONG_ROUNDED // a test spoils it
 #define ALONG_ROUNDED 1e-2f
