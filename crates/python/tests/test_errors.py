@@ -117,11 +117,13 @@ def test_progress_is_told_how_far_it_is(scene, renderer):
 
 def test_ctrl_c_stops_a_frame_at_once(scene):
     renderer = ew.Renderer(reference=True)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # Python has none where a shell let it be ignored
     timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
     timer.start()
     begun = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         renderer.render(scene, antialias="none", size=(4000, 4000))  # for minutes
+    signal.signal(signal.SIGINT, before)
     assert time.monotonic() - begun < 5
     assert renderer.render(scene, size=(4, 3)).shape == (3, 4, 4)
 
