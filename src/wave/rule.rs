@@ -23,7 +23,7 @@ const RULES: [(f64, Rule); 5] = [
     (0.0, rule(10, 3e-6, 2e-6)),
 ];
 
-/// The loosest tolerance whose rule serves fields with sharper peaks than 1 over the distance.
+/// The loosest tolerance whose rule finds peaks that are sharper than that of 1 over the distance on a smooth panel.
 const MOST_FOR_SHARP_PEAKS: f64 = 1e-3;
 
 /// By how much less each source may be off where sources of opposite signs cancel: their light is then several times
@@ -43,16 +43,22 @@ const fn rule(nodes: u32, smooth_threshold: f32, kinked_threshold: f32) -> Rule 
 }
 
 impl Rule {
-    /// Chooses the rule that meets a tolerance. A loose rule may miss sharp peaks, such as those of
-    /// fields that fall off with the squared distance.
+    /// Chooses the rule that meets a tolerance. A loose threshold of smooth fields may miss sharp peaks, such as those
+    /// of fields that fall off with the squared distance.
     pub fn of(tolerance: f64, has_sharp_peaks: bool, has_both_signs: bool) -> Self {
-        let most = if has_sharp_peaks {
-            MOST_FOR_SHARP_PEAKS
-        } else {
-            1.0
-        };
         let share = if has_both_signs { CANCELLED } else { 1.0 };
-        let wanted = tolerance.min(most) * share;
+        let rule = Self::serving(tolerance * share);
+        if !has_sharp_peaks {
+            return rule;
+        }
+        let of_peaks = Self::serving(tolerance.min(MOST_FOR_SHARP_PEAKS) * share);
+        Self {
+            smooth_threshold: of_peaks.smooth_threshold,
+            ..rule
+        }
+    }
+
+    fn serving(wanted: f64) -> Self {
         let serves = |(tolerance, _): &&(f64, Self)| wanted >= *tolerance;
         let [.., (_, strictest)] = RULES;
         RULES
