@@ -111,6 +111,11 @@ float3v add3(const float3v a, const float3v b) {
     return r;
 }
 
+float3v positive3(const float3v a) {
+    const float3v r = {max(a.x, 0.0f), max(a.y, 0.0f), max(a.z, 0.0f)};
+    return r;
+}
+
 float3v subtract3(const float3v a, const float3v b) {
     const float3v r = {a.x - b.x, a.y - b.y, a.z - b.z};
     return r;

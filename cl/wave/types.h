@@ -52,9 +52,10 @@ typedef struct {
     uint word_count;          // words of 32 sources
     uint from, to;            // which of the pass' tiles a launch takes, in shares of 1 / TILE_SHARES
     float pixel_step;         // from a pixel to its neighbour, world units on the projection plane
-    float most_odd;   // how large an odd and an even highest coefficient of an interpolation may be, of the least
-    float most_even;  // value; else it is not put to the test
-    float most_error; // and how large its relative error in the test
+    float most_odd;    // how large an odd and an even highest coefficient of an interpolation may be, of the least
+    float most_even;   // value; else it is not put to the test
+    float most_error;  // and how large its relative error in the test;
+    float least_light; // what is less counts as this much in both, linear light
 } TilePass;
 CHECK_SIZE(TilePass, SIZEOF_TILEPASS);
 

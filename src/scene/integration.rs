@@ -112,6 +112,8 @@ impl Absorption {
 pub struct Integration {
     /// The quadrature.
     pub method: Method,
+    /// Method `exact` by tiles: what the light of a source may be off by beside the tolerance, linear light, 0 or more.
+    pub absolute_tolerance: f64,
     /// Over what the integral runs.
     pub measure: Measure,
     /// What a pixel has of the integrals.
@@ -131,6 +133,7 @@ impl Default for Integration {
     fn default() -> Self {
         Self {
             method: Method::default(),
+            absolute_tolerance: 0.0,
             measure: Measure::Length,
             reduction: Reduction::Sum,
             antialias: Antialias::default(),

@@ -230,8 +230,13 @@ impl Scene {
 
     /// Returns whether sources of opposite signs may cancel.
     pub(crate) fn has_light_of_both_signs(&self) -> bool {
+        self.signs_of_light() == (true, true)
+    }
+
+    /// Returns whether there are sources of negative light, and of positive light.
+    pub(crate) fn signs_of_light(&self) -> (bool, bool) {
         let (mut low, mut high) = (DVec3::ZERO, DVec3::ZERO);
         self.for_each_emission(&mut |light| (low, high) = (low.min(light), high.max(light)));
-        low.cmplt(DVec3::ZERO).any() && high.cmpgt(DVec3::ZERO).any()
+        (low.cmplt(DVec3::ZERO).any(), high.cmpgt(DVec3::ZERO).any())
     }
 }

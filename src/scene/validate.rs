@@ -58,7 +58,12 @@ impl Scene {
         }
         let integration = &self.integration;
         integration.method.check().map_err(of("integration"))?;
-        check_softening(integration.softening).map_err(of("integration"))?;
+        for (key, value) in [
+            ("softening", integration.softening),
+            ("absolute_tolerance", integration.absolute_tolerance),
+        ] {
+            check_not_negative(key, value).map_err(of("integration"))?;
+        }
         check_display(&self.display, self.image).map_err(of("display"))?;
         self.check_depth().map_err(of(""))?;
         for (index, mesh) in self.meshes.iter().enumerate() {
@@ -172,10 +177,10 @@ fn check_size(size: ImageSize) -> Checked {
     Ok(())
 }
 
-fn check_softening(softening: f64) -> Checked {
-    finite("softening", softening)?;
-    if softening < 0.0 {
-        return Err(Fault::new("softening", "must not be negative"));
+fn check_not_negative(key: &'static str, value: f64) -> Checked {
+    finite(key, value)?;
+    if value < 0.0 {
+        return Err(Fault::new(key, "must not be negative"));
     }
     Ok(())
 }

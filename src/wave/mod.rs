@@ -43,7 +43,7 @@ use lists::Lists;
 use pace::Pace;
 use pack::layout::View;
 use pack::{Anchor, PackStamp, PackedSources};
-use tiles::OpenTiles;
+use tiles::{OpenTiles, Tolerance};
 
 /// Lengths on the device, of every pixel by rows from the top left, that end the rays of a scene without depths.
 #[derive(Debug, Clone, Copy)]
@@ -277,6 +277,7 @@ impl Wave {
         size: ImageSize,
     ) -> Result<Plan> {
         let rule = self.rule_for(scene);
+        let has_negative_light = self.packed.facts(scene).has_negative_light;
         let nodes = match scene.integration.method {
             Method::Simpson { divisions } => {
                 // Of a ray that ends early, only the kernel knows where its nodes are.
@@ -294,7 +295,7 @@ impl Wave {
             integrand,
             self.packed.sources.counts(),
             size,
-            scene.integration.method.tolerance(),
+            Tolerance::of(&scene.integration, has_negative_light),
             compute.device().compute_units,
         );
         let (kernels, options) = (&mut self.kernels, &self.options);

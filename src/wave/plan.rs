@@ -4,7 +4,7 @@
 use super::kernels::{Rays, Task, Variant};
 use super::pack::layout::{Integrand, Launch, TilePass, View};
 use super::partition::{self, Counts, Part, Work};
-use super::tiles;
+use super::tiles::{self, Tolerance};
 use crate::image::ImageSize;
 use crate::opencl::RawMemory;
 use crate::scene::{Sampling, Scene};
@@ -24,7 +24,7 @@ pub(crate) struct Plan {
     pub(super) task: Task,
     /// Depths of others on the device; `None`: the scene's, if it has any.
     pub(super) depths: Option<RawMemory>,
-    tolerance: f64,
+    tolerance: Tolerance,
 }
 
 /// Returns the rows at whose multiples an image may be cut and still be, to the bit, the same as in one piece.
@@ -50,7 +50,7 @@ impl Plan {
         integrand: Integrand,
         counts: Counts,
         image: ImageSize,
-        tolerance: f64,
+        tolerance: Tolerance,
         units: u32,
     ) -> Self {
         let first_tile_size = match task.rays {

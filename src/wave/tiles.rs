@@ -7,6 +7,7 @@ use super::partition::{Counts, Part, TILE_SHARES, word_count};
 use crate::error::Result;
 use crate::image::ImageSize;
 use crate::opencl::{Compute, DeviceBuffer, DeviceForm, OpenClDevice, RendererOptions, halved};
+use crate::scene::Integration;
 use crate::scene::kinds::KIND_COUNT;
 
 /// Sides of the smallest and of the largest tile, pixels; each pass halves them.
@@ -90,6 +91,26 @@ fn reserve<T: bytemuck::Pod>(
     Ok(())
 }
 
+/// By how much the light of a source may be off.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tolerance {
+    /// Of itself.
+    pub relative: f64,
+    /// Beside that, linear light.
+    pub absolute: f64,
+}
+
+impl Tolerance {
+    /// With one beside what light has of itself, light that is interpolated is taken to be positive.
+    pub fn of(integration: &Integration, has_negative_light: bool) -> Self {
+        let absolute = integration.absolute_tolerance;
+        Self {
+            relative: integration.method.tolerance(),
+            absolute: if has_negative_light { 0.0 } else { absolute },
+        }
+    }
+}
+
 /// By how much float32 rays differ from each other anyway.
 const LEAST_TOLERANCE: f64 = 2e-5;
 
@@ -115,13 +136,13 @@ pub(super) fn passes(
     counts: &Counts,
     (width, pixel_step): (u32, f32),
     first_size: u32,
-    tolerance: f64,
+    tolerance: Tolerance,
 ) -> Vec<TilePass> {
     let rows = part.pixels.len() as u32 / width;
     let columns = width.div_ceil(first_size);
     let tile_count = columns * rows.div_ceil(first_size);
-    let tolerance = tolerance.max(LEAST_TOLERANCE);
-    let (most_odd, most_even) = most_coefficients(tolerance);
+    let relative = tolerance.relative.max(LEAST_TOLERANCE);
+    let (most_odd, most_even) = most_coefficients(relative);
     let last = pass_count(first_size) - 1;
     let mut written: Range<u32> = 0..0;
     let mut pass = |level: u32| {
@@ -144,7 +165,8 @@ pub(super) fn passes(
             pixel_step,
             most_odd,
             most_even,
-            most_error: (MOST_ERROR * tolerance) as f32,
+            most_error: (MOST_ERROR * relative) as f32,
+            least_light: (tolerance.absolute / relative) as f32,
         }
     };
     let passes = (0..=last).map(&mut pass);
@@ -225,7 +247,11 @@ mod tests {
             passes: 0..5,
             shares: 0..TILE_SHARES,
         };
-        let passes = passes(&part, &counts, (1000, 1.0), 128, 1e-3);
+        let tolerance = Tolerance {
+            relative: 1e-3,
+            absolute: 0.0,
+        };
+        let passes = passes(&part, &counts, (1000, 1.0), 128, tolerance);
         let sizes: Vec<u32> = passes.iter().map(|pass| pass.size).collect();
         assert_eq!(sizes, [128, 64, 32, 16, 8]);
         assert!(passes.len() <= MOST_PASSES);

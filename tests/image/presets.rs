@@ -29,6 +29,7 @@ fn scenes() -> impl Iterator<Item = (&'static str, Scene)> {
         let mut scene = Scene::from_toml(preset.text).unwrap();
         scene.image = SIZE;
         scene.integration.antialias = Antialias::None;
+        scene.integration.absolute_tolerance = 0.0;
         // Of so few pixels a hundredth is much of a thin core; 1080 rows have chords as short as these.
         for path in scene.paths.iter_mut() {
             path.flatness = Some(FLATNESS);

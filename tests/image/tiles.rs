@@ -6,8 +6,8 @@ use crate::common::random::random_scene;
 use crate::common::tile_scenes::{hard_scenes, usual_view};
 use crate::common::{at_tolerance, difference, lane_widths, meets, renderer, sampled};
 use energywave::image::ImageSize;
-use energywave::scene::{Method, Profile, Sampling, Torus};
-use energywave::{Renderer, Scene, reference};
+use energywave::scene::{Method, Preset, Profile, Sampling, Torus};
+use energywave::{RadianceImage, Renderer, Scene, reference};
 use glam::DVec3;
 
 const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
@@ -281,4 +281,54 @@ fn a_tile_that_a_rings_light_only_touches_has_it_and_hasty_steps_to_the_ring_los
     let (own, hasty) = (lost(""), lost("-DTORUS_BENDS=0.0f"));
     assert_eq!(own, 0);
     assert!(hasty > 20, "hasty steps lost {hasty} values only");
+}
+
+/// A preset with an absolute tolerance, and the light that is taken away.
+fn nova(absolute: f64, sign: f64) -> Scene {
+    let preset = Preset::ALL.iter().find(|preset| preset.name == "nova");
+    let mut scene = Scene::from_toml(preset.unwrap().text).unwrap();
+    scene.integration.absolute_tolerance = absolute;
+    for sphere in scene.spheres.iter_mut() {
+        for layer in &mut sphere.layers {
+            layer.color = layer.color.map(|color| sign * color);
+        }
+    }
+    scene
+}
+
+#[test]
+fn light_may_be_off_by_an_absolute_tolerance_which_saves_integrals_and_keeps_black() {
+    const ABSOLUTE: f64 = 3e-4;
+    let mut renderer = renderer(common::device().lanes, "");
+    let truth = at_tolerance(&nova(0.0, 1.0), 1e-5);
+    let truth = renderer.render(&sampled(&truth, Sampling::Pixels)).unwrap();
+    let mut draw = |absolute| {
+        let image = renderer.render(&nova(absolute, 1.0)).unwrap();
+        (image, renderer.last_cost().integrals)
+    };
+    // By how many times the absolute tolerance values are off beyond the relative one: of 99.9 %, and at most.
+    let beyond = |image: &RadianceImage| {
+        let pairs = image.as_slice().iter().zip(truth.as_slice());
+        let excess = pairs.map(|(value, truth)| (value - truth).abs() - 1e-2 * truth);
+        let mut excess: Vec<f32> = excess.map(|it| it / ABSOLUTE as f32).collect();
+        excess.sort_by(f32::total_cmp);
+        (excess[excess.len() * 999 / 1000], excess[excess.len() - 1])
+    };
+    let ((strict, all), (own, fewer), (wide, _)) = (draw(0.0), draw(ABSOLUTE), draw(0.1));
+    let found = [&strict, &own, &wide].map(beyond);
+    assert!(fewer < all * 3 / 4, "{fewer} of {all}");
+    assert!(found[0].1 <= 0.0 && found[1].0 < 1.0 && found[1].1 < 10.0);
+    assert!(found[2].0 > 1.0 && found[2].1 > 10.0);
+    assert!(own.as_slice().iter().all(|value| *value >= 0.0));
+    // Black stays black, but where a tile's light ends between its nodes.
+    let pairs = own.as_slice().iter().zip(truth.as_slice());
+    let is_lit = |(value, truth): &(&f32, &f32)| **truth == 0.0 && **value > 1e-9;
+    let lit = pairs.filter(is_lit).count();
+    assert!(
+        lit * 10_000 < truth.as_slice().len(),
+        "{lit} of black are lit"
+    );
+    // Where light is taken away, nothing may be clamped, and errors stay relative.
+    let mut draw = |absolute| renderer.render(&nova(absolute, -1.0)).unwrap();
+    assert_eq!(draw(ABSOLUTE).as_slice(), draw(0.0).as_slice());
 }

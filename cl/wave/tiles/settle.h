@@ -43,6 +43,8 @@ INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, 
         return false;
 #endif
     meet();
+    const float4 emission = KIND_emission(task->sources, index);
+    const float least_light = task->pass->least_light / max(largest(emission), 1e-30f);
     for (uint round = 0; round < ROUNDS; ++round) {
         const Ray *const ray = &rays->rays[round];
         const floatv integral = KIND_integral(ray, task->sources, index, task->quadrature);
@@ -65,7 +67,7 @@ INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, 
             return false;
         meet_again();
 #endif
-        if (!seems_smooth(task->pass, memory->integrals))
+        if (!seems_smooth(task->pass, least_light, memory->integrals))
             return false;
     }
     for (uint round = 0; round < TILE_ROUNDS; ++round) {
@@ -73,12 +75,12 @@ INLINE bool KIND_settle(const TileTask *const task, const TileRays *const rays, 
         const floatv truth = shown(first, memory->integrals);
         const floatv seen = interpolate(memory->integrals, &rays->down[round], &rays->across[round]);
         if (first >= TILE_RAYS)
-            show(fabs(seen - truth) - MOST_ERROR(task->pass) * fabs(truth), first - TILE_RAYS, memory->excess);
+            show(fabs(seen - truth) - MOST_ERROR(task->pass) * max(fabs(truth), splat(least_light)), first - TILE_RAYS,
+                 memory->excess);
     }
     meet();
     if (!none_is_positive(memory->excess))
         return false;
-    const float4 emission = KIND_emission(task->sources, index);
     for (uint round = 0; round < TILE_ROUNDS && is_node(first_ray(round)); ++round)
         add_light(emission, shown(first_ray(round), memory->integrals), first_ray(round), memory->light);
     return true;

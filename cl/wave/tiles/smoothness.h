@@ -80,12 +80,12 @@ Coefficients highest_coefficients(const float q, const float4 v0, const float4 v
 }
 
 // Returns whether values at the nodes look like those of a function that can be interpolated: the highest coefficients
-// are small beside the least value. Never where a value is not a number.
-bool seems_smooth(const TilePass *const pass, __local const float *const values) {
+// are small beside the least value, or a least light. Never where a value is not a number.
+bool seems_smooth(const TilePass *const pass, const float least_light, __local const float *const values) {
     const float4 v0 = vload4(0, values), v1 = vload4(1, values), v2 = vload4(2, values), v3 = vload4(3, values);
     const float4 sizes = min(min(fabs(v0), fabs(v1)), min(fabs(v2), fabs(v3)));
     const float2 two = min(sizes.lo, sizes.hi);
-    const float least = min(two.x, two.y);
+    const float least = max(min(two.x, two.y), least_light);
     const float q = inner_place(pass);
     const Coefficients down = highest_coefficients(q, v0, v1, v2, v3);
     const Coefficients across =

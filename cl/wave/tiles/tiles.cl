@@ -217,6 +217,8 @@ INLINE void paint_tile(const TileTask *const task, const Tile *const tile, const
                     radiance.x = interpolate_across(red, &across);
                     radiance.y = interpolate_across(green, &across);
                     radiance.z = interpolate_across(blue, &across);
+                    if (pass->least_light > 0.0f) // errors may be larger than light
+                        radiance = positive3(radiance);
                 }
                 const Cone cone = cone_of_block(&cones, x, y);
                 if (is_open && may_light_block(task, &cone, memory)) {

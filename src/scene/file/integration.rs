@@ -19,6 +19,8 @@ pub(super) struct IntegrationTable {
     seed: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,
+    #[serde(skip_serializing_if = "is_zero")]
+    absolute_tolerance: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     sampling: Option<Sampling>,
     measure: Measure,
@@ -37,6 +39,11 @@ pub(super) struct IntegrationTable {
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
 fn is_true(flag: &bool) -> bool {
     *flag
 }
@@ -46,6 +53,8 @@ keys! { pub(in crate::scene) INTEGRATION_KEYS;
     method: Word(&["simpson", "jittered", "exact"]), NONE, Value("\"exact\""),
         "the integral to a tolerance, or sums of equal divisions";
     tolerance: from_to_below(1e-12, 1.0), NONE, Value("1e-3"), "exact: the relative error aimed at";
+    absolute_tolerance: NOT_NEGATIVE, "linear light", Value("0"),
+        "tiles: what a source's light may be off by beside that";
     sampling: Word(&["pixels", "tiles"]), NONE, Value("\"tiles\""),
         "exact: take every integral, or those that are needed";
     divisions: Whole(1, 65536), NONE, Value("200"), "simpson: an even number, at least 2; jittered: any";
@@ -95,6 +104,7 @@ impl Default for IntegrationTable {
             antialias,
             softening,
             hidden_surfaces,
+            absolute_tolerance,
             ..
         } = Integration::default();
         Self {
@@ -102,6 +112,7 @@ impl Default for IntegrationTable {
             divisions: None,
             seed: None,
             tolerance: None,
+            absolute_tolerance,
             sampling: None,
             measure,
             reduction,
@@ -155,6 +166,7 @@ impl IntegrationTable {
                     sampling: keys.sampling,
                 },
             },
+            absolute_tolerance: self.absolute_tolerance,
             measure: self.measure,
             reduction: self.reduction,
             antialias: self.antialias,
@@ -182,6 +194,7 @@ impl IntegrationTable {
             volume_method,
             slices,
             volume_step,
+            absolute_tolerance: integration.absolute_tolerance,
             measure: integration.measure,
             reduction: integration.reduction,
             antialias: integration.antialias,

@@ -62,7 +62,7 @@ device_struct! {
 
 device_struct! {
     /// One pass over tiles of one size.
-    TilePass [64] {
+    TilePass [68] {
         size: u32 = 0,
         inner: u32 = 4,
         parent_inner: u32 = 8,
@@ -79,6 +79,7 @@ device_struct! {
         most_odd: f32 = 52,
         most_even: f32 = 56,
         most_error: f32 = 60,
+        least_light: f32 = 64,
     }
 }
 

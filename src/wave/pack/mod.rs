@@ -267,6 +267,8 @@ pub struct SourceFacts {
     pub has_convolutions: bool,
     /// Whether any has a sharper peak than 1 over the distance.
     pub has_sharp_peaks: bool,
+    /// Whether any takes light away.
+    pub has_negative_light: bool,
     /// Whether some may cancel others.
     pub has_both_signs: bool,
     /// Whether the square of every field has a closed form.
@@ -283,13 +285,15 @@ impl SourceFacts {
     pub fn update(&mut self, scene: &Scene) {
         let stamp = Some(scene.sources_stamp());
         if self.stamp != stamp {
+            let (has_negative, has_positive) = scene.signs_of_light();
             *self = Self {
                 stamp,
                 has_squares: scene.any_falloff(|it| it.profile == Profile::InverseSquare),
                 has_shapes: scene.any_falloff(|it| it.is_shaped()),
                 has_convolutions: scene.any_falloff(|it| it.profile == Profile::Convolution),
                 has_sharp_peaks: scene.any_falloff(|it| it.is_sharp()),
-                has_both_signs: scene.has_light_of_both_signs(),
+                has_negative_light: has_negative,
+                has_both_signs: has_negative && has_positive,
                 has_closed_squares: !scene.any_falloff(|it| !has_closed_square(it)),
             };
         }
