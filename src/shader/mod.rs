@@ -15,6 +15,7 @@ mod refuse;
 mod text;
 #[cfg(feature = "shaders")]
 mod translate;
+mod used;
 
 use block::{Block, Exported, Row};
 
