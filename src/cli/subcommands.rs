@@ -90,6 +90,8 @@ pub enum EntryName {
     Function,
     /// Also a picture by the scene's camera
     Image,
+    /// The function wave_irradiance alone: the light that points and straight cores cast on a surface
+    Irradiance,
 }
 
 #[derive(Debug, Args)]

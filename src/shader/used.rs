@@ -1,7 +1,7 @@
 //! What of a text is used: its items stand between empty lines, and one that nobody names is left out.
 
 /// What a host or a stage calls, and the block.
-const ROOTS: [&str; 4] = ["wave_light", "image", "screen", "Wave"];
+const ROOTS: [&str; 5] = ["wave_light", "wave_irradiance", "image", "screen", "Wave"];
 
 struct Item<'a> {
     text: &'a str,
