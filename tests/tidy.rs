@@ -103,6 +103,7 @@ const LAYERS: [(&str, &[&str]); 18] = [
     (
         "papers",
         &[
+            "volume",
             "image",
             "opencl",
             "particle",

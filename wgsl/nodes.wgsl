@@ -35,6 +35,5 @@ fn faded_field(softened2: f32, x: f32, light: Light) -> f32 {
         field = exp(-bare2 * light.core.w);
     }
     let window = max(1.0 - bare2 * light.core.y, 0.0);
-    let n = nearness(x);
-    return wave.rays.z * n * n * field * window * window;
+    return wave.rays.z * fading(x) * field * window * window;
 }

@@ -41,7 +41,7 @@ fn zero_along(at: f32, slope: f32, end: f32) -> f32 {
     return clamp(-at / select(slope, 1e-30, abs(slope) < 1e-30), 0.0, end);
 }
 
-// Returns n, whose square is the decay.
+// Returns n, whose powers are decays.
 fn nearness(x: f32) -> f32 {
     return select(1.0, wave.rays.y / (x + wave.rays.y), wave.rays.y > 0.0);
 }

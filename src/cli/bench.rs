@@ -15,7 +15,8 @@ use serde::Serialize;
 use super::records::{Origin, Spread};
 use super::subcommands::{BenchArguments, TableName};
 use super::{
-    Outcome, bench_2008, bench_2013, choose_devices, names, note, print, read_scene, tell_depths,
+    Outcome, bench_2006, bench_2008, bench_2013, choose_devices, names, note, print, read_scene,
+    tell_depths,
 };
 
 /// A cell of a table.
@@ -96,6 +97,7 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
         Some(TableName::Torus) => bench_tables(arguments, &[Table::Torus]),
         Some(TableName::Bezier) => bench_tables(arguments, &[Table::Bezier]),
         Some(TableName::Beam) => bench_table_2010(arguments),
+        Some(TableName::Volumes) => bench_2006::run(arguments),
         Some(TableName::Metaballs) => bench_2008::run(arguments),
         Some(TableName::Collisions) => bench_2013::run(arguments),
         None => bench_tables(arguments, &[Table::Torus, Table::Bezier]),

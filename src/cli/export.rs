@@ -21,6 +21,7 @@ pub fn run(arguments: &ExportArguments) -> Outcome {
     let entry = match arguments.entry {
         EntryName::Function => Entry::Function,
         EntryName::Image => Entry::Image,
+        EntryName::Irradiance => Entry::Irradiance,
     };
     let uniforms = arguments.uniforms.as_ref().map(TextFile::create);
     let uniforms = uniforms.transpose()?;

@@ -4,6 +4,7 @@ mod animate;
 mod args;
 mod bake;
 mod bench;
+mod bench_2006;
 mod bench_2008;
 mod bench_2013;
 mod compare;

@@ -90,6 +90,8 @@ pub enum EntryName {
     Function,
     /// Also a picture by the scene's camera
     Image,
+    /// The function wave_irradiance alone: the light that points and straight cores cast on a surface
+    Irradiance,
 }
 
 #[derive(Debug, Args)]
@@ -135,7 +137,7 @@ pub struct BenchArguments {
     /// Scene file to measure instead of the paper's tables
     pub scene: Option<PathBuf>,
     /// A paper's table: 2 (torus) or 3 (Bezier) of 2015, both without; 2010 (beam, with and without hidden surfaces);
-    /// 2008 (metaballs); 2013 (particles that hit a box)
+    /// 2008 (metaballs); 2013 (particles that hit a box); 2006 (a volume)
     #[arg(long, value_enum, conflicts_with = "scene")]
     pub table: Option<TableName>,
     #[command(flatten)]
@@ -213,6 +215,9 @@ pub enum TableName {
     /// Particles that hit a box, as sprites and as streaks
     #[value(name = "2013")]
     Collisions,
+    /// A beam by ray casting, and as a volume by slices, along rays and as a billboard
+    #[value(name = "2006")]
+    Volumes,
 }
 
 #[derive(Debug, Args)]

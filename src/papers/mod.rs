@@ -4,6 +4,7 @@
 #[cfg(feature = "files")]
 mod figures;
 mod occluders;
+mod table_2006;
 mod table_2008;
 mod table_2010;
 mod table_2013;
@@ -17,6 +18,7 @@ use glam::{DMat4, DQuat, DVec3};
 #[cfg(feature = "files")]
 pub use figures::Figure;
 pub use occluders::tetrahedra;
+pub use table_2006::{Cell2006, Method2006, beam_2006, table_2006};
 pub use table_2008::{Cell2008, PARTICLES_2008, Speed2008, methods_2008, table_2008};
 pub use table_2010::{Cell2010, PAPER_CPU_FPS, TABLE_2010, camera_2010, single_threaded_fps};
 pub use table_2013::{Cell2013, Speed2013, TABLE_2013};

@@ -31,6 +31,7 @@ pub use quadrature::integrate;
 pub(crate) use surface::see_surfaces;
 #[doc(hidden)]
 pub use surface::{SurfaceRay, surface_rays};
+pub(crate) use volumes::volume_light;
 
 use particles::Particles;
 use volumes::Volumes;

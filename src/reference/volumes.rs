@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::Integrand;
 use super::quadrature::integrate;
 use crate::scene::{Ray, Scene, Volume, VolumeInterpolation};
+use crate::threads;
 use crate::volume::Storage;
 
 /// The relative error of each integral: volumes have kinks at every cell.
@@ -120,4 +121,16 @@ fn between(interpolation: VolumeInterpolation, share: f64, at: impl Fn(i64) -> f
     let chord = to - from;
     let bend = slopes[0] + slopes[1] - 2.0 * chord;
     from + share * (slopes[0] + share * (chord - slopes[0] - bend + share * bend))
+}
+
+/// Returns the light of volumes along each ray, over the parameter or the length as the scene's measure says.
+pub(crate) fn volume_light(scene: &Scene, rays: &[Ray]) -> Vec<DVec3> {
+    let volumes = Volumes::new(scene, Integrand::of(scene));
+    let mut lights = vec![DVec3::ZERO; rays.len()];
+    threads::for_each_chunk(&mut lights, 1, |index, light| {
+        let ray = &rays[index];
+        let scale = scene.integration.scale(ray.span.length());
+        light.fill(volumes.light(ray, 1.0) * scale);
+    });
+    lights
 }

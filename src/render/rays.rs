@@ -2,9 +2,11 @@
 
 use std::ops::ControlFlow;
 
+use glam::DVec3;
+
 use super::{Renderer, RendererBackend};
 use crate::error::{Error, Result, SceneError};
-use crate::reference::{Tracer, particle_light};
+use crate::reference::{Tracer, particle_light, volume_light};
 use crate::scene::{List, Method, Ray, Scene};
 use crate::threads;
 
@@ -22,12 +24,11 @@ impl Renderer {
     /// says. The scene's camera, image, depth and surfaces play no part: nothing hides light. With
     /// [`Jittered`](crate::scene::Method::Jittered) a ray's place in the list takes the place of its pixel's number.
     ///
-    /// Particles as light, and those of waves at the scene's moment, are integrated in float64 on the host, on every
-    /// device, by quadrature: slowly.
+    /// Particles as light, those of waves at the scene's moment, and volumes are integrated in float64 on the host, on
+    /// every device, by quadrature: slowly. Billboards face the scene's camera.
     ///
     /// # Errors
-    /// As [`Renderer::render`]; [`Error::Scene`](crate::Error::Scene) also for a ray that [`Ray::fault`] refuses;
-    /// [`Error::Unsupported`](crate::Error::Unsupported) for a scene with volumes.
+    /// As [`Renderer::render`]; [`Error::Scene`](crate::Error::Scene) also for a ray that [`Ray::fault`] refuses.
     pub fn integrate(&mut self, scene: &Scene, rays: &[Ray]) -> Result<Vec<[f64; 3]>> {
         self.integrate_with_progress(scene, rays, &mut |_| ControlFlow::Continue(()))
     }
@@ -49,8 +50,7 @@ impl Renderer {
                 return Err(SceneError::value(format!("ray {index}"), fault).into());
             }
         }
-        scene.check_rays_alone()?;
-        if !scene.has_particles() {
+        if !scene.has_particles() && scene.volumes.is_empty() {
             return self.integrate_sources(scene, rays, progress);
         }
         let simulated = self.simulated_waves(scene)?;
@@ -58,18 +58,20 @@ impl Renderer {
         let sources = Scene {
             particles: List::new(),
             light_elements: List::new(),
+            volumes: List::new(),
             ..given.clone()
         };
         let mut lights = self.integrate_sources(&sources, rays, progress)?;
-        for (light, of_particles) in lights.iter_mut().zip(particle_light(given, rays)) {
-            for (light, part) in light.iter_mut().zip(of_particles.to_array()) {
-                *light += part;
-            }
+        let others = particle_light(given, rays).into_iter();
+        let others = others.zip(volume_light(given, rays));
+        for (light, (of_particles, of_volumes)) in lights.iter_mut().zip(others) {
+            let sum = DVec3::from(*light) + of_particles + of_volumes;
+            *light = sum.to_array();
         }
         Ok(lights)
     }
 
-    /// Integrates along valid rays in a valid scene without particles.
+    /// Integrates along valid rays in a valid scene without particles and volumes.
     fn integrate_sources(
         &mut self,
         scene: &Scene,

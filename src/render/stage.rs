@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Renderer;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::particle::{Simulation, Solid};
 use crate::reference;
@@ -59,15 +59,6 @@ impl Scene {
     pub(super) fn has_surfaces(&self) -> bool {
         let has_listed = !self.metaballs.is_empty() || !self.meshes.is_empty();
         has_listed || self.colliders.iter().any(|collider| collider.visible)
-    }
-
-    /// Refuses what is seen in pictures only.
-    pub(super) fn check_rays_alone(&self) -> Result<()> {
-        if self.volumes.is_empty() {
-            return Ok(());
-        }
-        let message = "volumes are seen in pictures only; integrate along rays without them";
-        Err(Error::Unsupported(message.to_owned()))
     }
 
     /// Returns whether a frame is put together on the host.

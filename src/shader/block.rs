@@ -48,11 +48,62 @@ pub(super) trait Exported {
     }
 }
 
+/// Which formulas the light of a scene takes.
+#[derive(Default)]
+pub(super) struct Forms {
+    /// Of the decay.
+    pub(super) power: u32,
+    pub(super) is_absorbed: bool,
+    has_decay: bool,
+    /// Straight light of 1/q, of 1/q^2, and without a closed form.
+    pub(super) has_inverse: bool,
+    pub(super) has_square: bool,
+    pub(super) has_shaped: bool,
+}
+
+impl Forms {
+    fn of(scene: &Scene) -> Self {
+        let fading = scene.fading();
+        let power = scene.decay.map_or(0, |decay| decay.power);
+        Self {
+            power,
+            is_absorbed: fading.is_some_and(|it| it.kappa != 0.0),
+            has_decay: power > 0,
+            ..Self::default()
+        }
+    }
+
+    /// Returns whether light fades otherwise than by the square of n.
+    pub(super) fn fades(&self) -> bool {
+        self.is_absorbed || matches!(self.power, 1 | 3)
+    }
+
+    fn add(&mut self, falloff: Falloff) {
+        let is_shaped = falloff.profile > 1 || falloff.reach2 > 0.0 || self.fades();
+        self.has_shaped |= is_shaped;
+        self.has_inverse |= !is_shaped && falloff.profile == 0;
+        self.has_square |= !is_shaped && falloff.profile == 1;
+    }
+
+    /// Returns a number that is another for other texts.
+    fn number(&self) -> usize {
+        let flags = [
+            self.is_absorbed,
+            self.has_decay,
+            self.has_inverse,
+            self.has_square,
+            self.has_shaped,
+        ];
+        let flags = flags.iter().fold(0, |sum, it| 2 * sum + usize::from(*it));
+        4 * flags + self.power as usize
+    }
+}
+
 /// The values of a scene, and what there is of every kind.
 pub(super) struct Block {
     pub(super) rows: Vec<Row>,
     pub(super) series: Vec<Row>,
-    pub(super) is_shaped: bool,
+    pub(super) forms: Forms,
     pub(super) kinds: Vec<Kind>,
     /// What light is multiplied with before it is tone-mapped.
     #[cfg(feature = "shaders")]
@@ -95,7 +146,7 @@ impl Block {
         let mut block = Self {
             rows: head(scene, length),
             series: Vec::new(),
-            is_shaped: false,
+            forms: Forms::of(scene),
             kinds: Vec::new(),
             #[cfg(feature = "shaders")]
             gain: gain(scene),
@@ -118,7 +169,9 @@ impl Block {
 
     pub(super) fn counts(&self) -> Vec<usize> {
         let of_kinds = self.kinds.iter().map(|kind| kind.count);
-        of_kinds.chain([self.series.len()]).collect()
+        of_kinds
+            .chain([self.series.len(), self.forms.number()])
+            .collect()
     }
 
     /// Returns the fields of the block, each of four numbers.
@@ -165,7 +218,9 @@ impl Block {
             self.rows.extend(source.rows(self.series.len() as f32));
             self.series.extend(source.series(packed));
             let falloff = source.falloff();
-            self.is_shaped |= falloff.profile > 1 || falloff.reach2 > 0.0;
+            if !Device::IS_MAPPED {
+                self.forms.add(falloff);
+            }
             self.rows
                 .extend(light(source.emission(), falloff, softening2));
         }
@@ -221,7 +276,8 @@ pub(super) const HEAD_NAMES: [&str; 6] = ["rays", "eye", "corner", "across", "do
 fn head(scene: &Scene, length: f64) -> Vec<Row> {
     let plane = scene.view_plane();
     let decay = scene.decay.filter(|decay| decay.power > 0);
-    let strength = decay.map_or(1.0, |decay| decay.alpha / (decay.beta * decay.beta));
+    let strength = decay.map_or(1.0, |it| it.alpha / it.beta.powi(it.power as i32));
+    let kappa = scene.absorption.map_or(0.0, |it| it.kappa);
     let row = |v: DVec3, last: f64| [v.x as f32, v.y as f32, v.z as f32, last as f32];
     let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
     let corner = plane.first_pixel - 0.5 * (plane.column_step + plane.row_step);
@@ -232,7 +288,7 @@ fn head(scene: &Scene, length: f64) -> Vec<Row> {
         // Emission is measured over s, the integral over lengths.
         [length, beta, strength / length, floor * floor].map(|it| it as f32),
         row(plane.eye, kind),
-        row(corner, 0.0),
+        row(corner, kappa),
         row(width * plane.column_step, 0.0),
         row(height * plane.row_step, 0.0),
         row(plane.forward, 0.0),

@@ -9,12 +9,14 @@ mod block;
 #[cfg(feature = "shaders")]
 mod constants;
 mod curves;
+mod irradiance;
 mod lines;
 mod points;
 mod refuse;
 mod text;
 #[cfg(feature = "shaders")]
 mod translate;
+mod used;
 
 use block::{Block, Exported, Row};
 
@@ -46,6 +48,10 @@ pub enum Entry {
     /// Also a picture by the scene's camera: the fragment stage `image`, and in WGSL and HLSL the vertex stage
     /// `screen`.
     Image,
+    /// The function `wave_irradiance` alone: from a place of a surface and its normal (of length 1), the light that
+    /// points and straight cores cast on it, linear RGB, as `Renderer::irradiance` has it without shadows. The block
+    /// is another.
+    Irradiance,
 }
 
 /// A scene's text, and what it takes to fill its block.
@@ -55,6 +61,7 @@ pub struct Shader {
     pub text: String,
     counts: Vec<usize>,
     fields: Vec<UniformField>,
+    entry: Entry,
 }
 
 /// Four float32 of a uniform block.
@@ -74,11 +81,17 @@ impl Shader {
     /// # Errors
     /// Those of [`export`]; [`Error::Unsupported`] where there are more or fewer lights of some kind.
     pub fn uniforms(&self, scene: &Scene) -> Result<Vec<u8>> {
-        let block = Block::of(scene)?;
-        if block.counts() != self.counts {
+        let others = || {
             let message =
                 "the scene has other sources than the one that was exported: export it again";
-            return Err(Error::Unsupported(message.to_owned()));
+            Error::Unsupported(message.to_owned())
+        };
+        if self.entry == Entry::Irradiance {
+            return irradiance::uniforms(scene, &self.counts)?.ok_or_else(others);
+        }
+        let block = Block::of(scene)?;
+        if block.counts() != self.counts {
+            return Err(others());
         }
         let rows = [block.rows, block.series].concat();
         Ok(bytemuck::cast_slice(&rows).to_vec())
@@ -101,12 +114,27 @@ impl Shader {
     }
 }
 
+/// What is said where there is no translator.
+#[cfg(not(feature = "shaders"))]
+const WGSL_ALONE: &str = "this build writes WGSL alone: build it with the feature shaders";
+
 /// Writes a scene as a shader.
 ///
 /// # Errors
 /// [`Error::Scene`] by the key of what has no form, where nothing glows, and if values are wrong;
 /// [`Error::Unsupported`] where this build lacks the language.
 pub fn export(scene: &Scene, language: Language, entry: Entry) -> Result<Shader> {
+    if entry == Entry::Irradiance && language != Language::Shadertoy {
+        let shader = irradiance::export(scene)?;
+        let text = match language {
+            Language::Wgsl => shader.text.clone(),
+            #[cfg(feature = "shaders")]
+            _ => translate::translate(&shader.text, language, entry)?,
+            #[cfg(not(feature = "shaders"))]
+            _ => return Err(Error::Unsupported(WGSL_ALONE.to_owned())),
+        };
+        return Ok(Shader { text, ..shader });
+    }
     let block = Block::of(scene)?;
     let entry = match language {
         Language::Shadertoy => Entry::Function,
@@ -120,14 +148,12 @@ pub fn export(scene: &Scene, language: Language, entry: Entry) -> Result<Shader>
         #[cfg(feature = "shaders")]
         _ => translate::translate(&wgsl, language, entry)?,
         #[cfg(not(feature = "shaders"))]
-        _ => {
-            let message = "this build writes WGSL alone: build it with the feature shaders";
-            return Err(Error::Unsupported(message.to_owned()));
-        }
+        _ => return Err(Error::Unsupported(WGSL_ALONE.to_owned())),
     };
     Ok(Shader {
         text,
         counts: block.counts(),
         fields: block.fields(),
+        entry,
     })
 }

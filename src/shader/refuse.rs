@@ -25,15 +25,6 @@ pub(super) fn refuse(scene: &Scene) -> Result<()> {
             "the root of a sum of squares",
         ));
     }
-    if scene.absorption.is_some_and(|it| it.kappa != 0.0) {
-        return Err(no_form("absorption.kappa", "[absorption]"));
-    }
-    if scene.fading().is_some() {
-        return Err(no_form(
-            "decay.power",
-            "a decay of another power than 2 or 0",
-        ));
-    }
     refuse_sources(scene)
 }
 

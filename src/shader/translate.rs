@@ -18,6 +18,11 @@ const STAGE: &str = "\n@fragment\nfn image(@location(0) uv: vec2f) -> @location(
 pub(super) fn translate(wgsl: &str, language: Language, entry: Entry) -> Result<String> {
     let source = match entry {
         Entry::Function => format!("{wgsl}{STAGE}"),
+        Entry::Irradiance => {
+            let light = "wave_light(vec3f(uv, 0.0), vec3f(0.0, 0.0, 1.0), 1.0)";
+            let call = "wave_irradiance(vec3f(uv, 0.0), vec3f(0.0, 0.0, 1.0))";
+            format!("{wgsl}{}", STAGE.replace(light, call))
+        }
         Entry::Image => wgsl.to_owned(),
     };
     let (module, info) = parsed(&source)?;
@@ -27,7 +32,7 @@ pub(super) fn translate(wgsl: &str, language: Language, entry: Entry) -> Result<
     };
     let whole = match entry {
         Entry::Image => translated.as_str(),
-        Entry::Function => without_stage(&translated, language),
+        Entry::Function | Entry::Irradiance => without_stage(&translated, language),
     };
     Ok(with_comments(whole, wgsl, language))
 }

@@ -3,7 +3,9 @@
 
 use energywave::glam::DVec3;
 use energywave::image::{DepthAlong, DepthImage, ImageSize, RadianceImage};
-use energywave::scene::{Camera, Decay, Volume, VolumeInterpolation, VolumeMethod, VolumeShape};
+use energywave::scene::{
+    Antialias, Camera, Decay, Sphere, Volume, VolumeInterpolation, VolumeMethod, VolumeShape,
+};
 use energywave::volume::{Storage, Texture};
 use energywave::{Device, ErrorKind, Renderer, RendererOptions, Scene};
 
@@ -262,4 +264,47 @@ fn a_volume_that_is_turned_grows_brighter_and_a_billboard_does_not() {
         last = brightest(&volume);
     }
     assert!(last > 1.5 * brightest(&plate));
+}
+
+#[test]
+fn single_rays_are_given_the_light_of_volumes() {
+    let mut renderers = [
+        Renderer::new(&common::device()).unwrap(),
+        Renderer::new(&Device::reference()).unwrap(),
+    ];
+    for shape in [VolumeShape::Volume, VolumeShape::Billboard] {
+        let mut scene = scene(Storage::Emission);
+        scene.decay = Some(Decay::new(0.5, 0.2));
+        scene.volumes[0].shape = shape;
+        scene.spheres.push(Sphere {
+            radius: 0.5,
+            coefficient: 0.02,
+            ..Sphere::default()
+        });
+        scene.integration.antialias = Antialias::None;
+        let shown = renderers[0].render(&scene).unwrap();
+        let plane = scene.view_plane();
+        let pixels: Vec<u32> = (0..45 * 37).step_by(17).collect();
+        let brightest = shown
+            .as_slice()
+            .iter()
+            .fold(0.0_f32, |most, it| most.max(*it));
+        for renderer in &mut renderers {
+            let worst = [0, 1].map(|aside| {
+                let rays = pixels.iter().map(|it| plane.ray(it % 45 + aside, it / 45));
+                let lights = renderer
+                    .integrate(&scene, &rays.collect::<Vec<_>>())
+                    .unwrap();
+                let pairs = lights.iter().zip(&pixels);
+                let off = pairs.map(|(light, pixel)| {
+                    let pixel = &shown.as_slice()[4 * *pixel as usize..][..3];
+                    let off = |(light, shown): (&f64, &f32)| (*light as f32 - shown).abs();
+                    light.iter().zip(pixel).map(off).fold(0.0, f32::max)
+                });
+                off.fold(0.0, f32::max) / brightest
+            });
+            println!("{shape:?}: {worst:?}");
+            assert!(worst[0] < ERROR && worst[1] > ERROR, "{shape:?}: {worst:?}");
+        }
+    }
 }

@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use energywave::image::compare;
 use energywave::papers::{
-    DIVISIONS, RESOLUTIONS, TABLE_2010, TABLE_2013, Table, measure, methods_2008, table_2008,
-    turned,
+    DIVISIONS, Method2006, RESOLUTIONS, TABLE_2010, TABLE_2013, Table, beam_2006, measure,
+    methods_2008, table_2006, table_2008, turned,
 };
-use energywave::scene::ParticleShape;
+use energywave::scene::{Method, ParticleShape};
 use energywave::{Device, RadianceImage, Renderer, reference};
 use serde_json::Value;
 
@@ -265,4 +265,44 @@ fn a_cell_of_2013_has_its_particles_and_another_step_in_every_frame() {
             .unwrap()
     };
     assert!(frame(120).as_slice() != frame(121).as_slice());
+}
+
+/// What few cells leave of the beam of 2006, the mean over its light.
+const OF_CELLS: f32 = 0.15;
+
+#[test]
+fn the_ways_of_2006_draw_the_same_beam_and_a_billboard_only_from_before_it() {
+    let mut reference = Renderer::new(&Device::reference()).unwrap();
+    let mut renderer = common::renderer(common::device().lanes, "");
+    let texture = beam_2006(&mut reference, 64).unwrap();
+    assert_eq!(table_2006().len(), 20);
+    let scene = |method, height| {
+        let mut cells = table_2006().into_iter();
+        let cell = cells.find(|cell| cell.cells <= 64 && cell.method == method);
+        let mut scene = cell.unwrap().scene(&texture);
+        (scene.image.width, scene.image.height) = (32, 32);
+        scene.integration.method = Method::default();
+        scene.camera.eye.z = height;
+        scene
+    };
+    for height in [0.0, 12.0] {
+        let truth = reference
+            .render(&scene(Method2006::RayCasting, height))
+            .unwrap();
+        let light: f32 = truth.as_slice().iter().step_by(4).sum();
+        for (method, is_same) in [
+            (Method2006::Slices, true),
+            (Method2006::Rays, true),
+            (Method2006::Billboard, height == 0.0),
+        ] {
+            let image = renderer.render(&scene(method, height)).unwrap();
+            let pairs = image.as_slice().iter().zip(truth.as_slice()).step_by(4);
+            let off = pairs
+                .map(|(found, light)| (found - light).abs())
+                .sum::<f32>()
+                / light;
+            println!("{method:?} from {height}: {off:.3}");
+            assert_eq!(off < OF_CELLS, is_same, "{method:?} from {height}: {off}");
+        }
+    }
 }

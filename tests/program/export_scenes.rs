@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 use energywave::Scene;
 use energywave::image::ImageSize;
 use energywave::scene::{
-    Antialias, Beam, BeamEnd, Curve, Cylinder, Decay, Preset, Profile, Segment, Sphere, Torus,
+    Absorption, Antialias, Beam, BeamEnd, Curve, Cylinder, Decay, Preset, Profile, Segment, Sphere,
+    Torus,
 };
 use glam::DVec3;
 
 use crate::common::empty_scene;
 
-/// Small pictures: the reference takes its time.
-pub const SIDE: u32 = 48;
+/// Width and height of pictures, and of those with rings and curves, which take more time.
+pub const SIDE: u32 = 256;
+const SIDE_OF_NODES: u32 = 96;
 
 /// The papers' figures that have closed forms, and what they lack.
 pub fn scenes() -> Vec<(String, Scene)> {
@@ -127,7 +129,38 @@ fn shaped_scenes() -> Vec<(String, Scene)> {
             scenes.push((format!("shaped {profile:?} {reach:?} {decay:?}"), scene));
         }
     }
+    for (power, kappa) in [(1, 0.0), (3, 0.0), (2, 0.4), (0, 0.4)] {
+        for (profile, radius) in [(Profile::Inverse, 0.05), (Profile::InverseSquare, 0.1)] {
+            let mut scene = faded(power, kappa);
+            let (from, to) = (DVec3::new(-0.9, 0.3, 0.2), DVec3::new(0.4, -0.5, 0.7));
+            scene.segments.push(Segment {
+                radius,
+                profile,
+                ..Segment::new(from, to)
+            });
+            let beam = Beam::new(DVec3::new(1.0, 0.2, 0.6));
+            scene.beams.push(Beam {
+                tip: DVec3::new(-0.6, 0.0, -0.8),
+                end: BeamEnd::Taper(0.7),
+                radius,
+                profile,
+                sphere_coefficient: 0.3,
+                ..beam
+            });
+            scenes.push((format!("faded {power} {kappa} {profile:?}"), scene));
+        }
+    }
     scenes
+}
+
+/// Makes a scene whose light decays by a power and is absorbed.
+fn faded(power: u32, kappa: f64) -> Scene {
+    let mut scene = empty_scene(SIDE, SIDE);
+    let mut decay = Decay::new(0.1, 0.1);
+    decay.power = power;
+    scene.decay = Some(decay);
+    scene.absorption = (kappa > 0.0).then_some(Absorption { kappa });
+    scene
 }
 
 /// Those of the presets that a shader may have.
@@ -147,7 +180,7 @@ pub fn mapped_scenes() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for name in PRESETS {
         let mut scene = Scene::from_toml(Preset::named(name).unwrap().text).unwrap();
-        (scene.image.width, scene.image.height) = (SIDE, SIDE);
+        (scene.image.width, scene.image.height) = (SIDE_OF_NODES, SIDE_OF_NODES);
         scene.integration.antialias = Antialias::None;
         scenes.push((name.to_owned(), scene));
     }
@@ -180,7 +213,7 @@ pub fn mapped_scenes() -> Vec<(String, Scene)> {
             }
             for (number, (axis, control_points)) in axes.into_iter().zip(curves).enumerate() {
                 let new = || {
-                    let mut scene = empty_scene(SIDE, SIDE);
+                    let mut scene = empty_scene(SIDE_OF_NODES, SIDE_OF_NODES);
                     scene.decay = decay;
                     scene.integration.antialias = Antialias::None;
                     scene

@@ -4,10 +4,11 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use energywave::Scene;
+use energywave::glam::DVec3;
 use energywave::reference;
 use energywave::scene::{AnimatedScene, Antialias, Preset};
 use energywave::shader::{Entry, Language, export};
+use energywave::{Device, Renderer, Scene};
 
 use crate::common::program::{Folder, expect};
 use crate::export::drawn;
@@ -115,14 +116,6 @@ fn what_has_no_form_is_refused_by_its_place_and_nothing_is_written() {
         (
             "[[volume]]\nlight_ball = {}\n",
             "scene.toml:4:1: volume[0]: [[volume]] has no form",
-        ),
-        (
-            "[absorption]\nkappa = 1\n[[sphere]]\n",
-            "scene.toml:5:9: absorption.kappa",
-        ),
-        (
-            "[decay]\nalpha = 1\nbeta = 1\npower = 3\n[[sphere]]\n",
-            "scene.toml:7:9: decay.power: a decay of another power",
         ),
     ];
     for (scene, words) in cases {
@@ -261,7 +254,7 @@ fn the_exports_of_the_examples_are_those_that_are_written_and_draw_their_scene()
         )
     };
     let off = |toy: &str| {
-        let found = drawn(folder.path(), &text(toy), &[])?;
+        let found = drawn(folder.path(), &text(toy), &[], SIDE)?;
         let pixels = found.chunks_exact(3).enumerate();
         let offs = pixels.map(|(index, found)| {
             let index = index as u32;
@@ -279,6 +272,81 @@ fn the_exports_of_the_examples_are_those_that_are_written_and_draw_their_scene()
     };
     println!("{found:e}");
     assert!(found <= MOST_OFF, "{found:e}");
-    let spoiled = off(&toy.replace("atan(", "1.1 * atan(")).unwrap();
+    let spoiled = off(&toy.replace("0.1894506", "0.2894506")).unwrap();
     assert!(spoiled > MOST_OFF, "a spoiled text passes: {spoiled:e}");
+}
+
+/// What float32 leaves of an irradiance, of the greatest.
+const MOST_OFF_OF_IRRADIANCE: f64 = 1e-5;
+
+#[test]
+fn opengl_finds_the_irradiance_of_points_and_lines_as_the_reference_does() {
+    let folder = Folder::new();
+    let scene = Scene::from_toml(&format!(
+        "{HEAD}[[sphere]]\ncenter = [0.2, 0.1, 0.4]\ncolor = [1, 0.5, 0.2]\n\
+         [[segment]]\nfrom = [-0.8, -0.3, -0.4]\nto = [0.5, 0.6, 0.9]\n[[cylinder]]\ndirection = [1, 0.2, 0.1]\n\
+         point = [0, 0, 1]\n[[path]]\npoints = [[1, 1, 0.5], [0, 1, 1], [-1, 0.5, 0.2]]\n"
+    ))
+    .unwrap();
+    let shader = export(&scene, Language::Glsl, Entry::Irradiance).unwrap();
+    assert!(shader.text.contains("// Returns the irradiance of a place"));
+    let uniforms = shader.uniforms(&scene).unwrap();
+    assert_eq!(uniforms.len(), 16 * shader.fields().len());
+    // A tilted surface that cores cross.
+    const WIDE: u32 = 64;
+    let normal = DVec3::new(0.48, -0.36, 0.8);
+    let (declared, pixel) = match shader.text.contains("_fs2p_location0") {
+        true => ("", "_fs2p_location0"),
+        false => ("out vec4 pixel;", "pixel"),
+    };
+    let stage = format!(
+        "{declared}\nvoid main() {{ vec2 uv = gl_FragCoord.xy / {WIDE}.0; \
+         {pixel} = vec4(wave_irradiance(vec3(2.0 * uv - 1.0, 0.25), vec3(0.48, -0.36, 0.8)), 1.0); }}\n"
+    );
+    let at = |it: u32| (f64::from(it) + 0.5) / f64::from(WIDE) * 2.0 - 1.0;
+    let pixels: Vec<u32> = (0..WIDE * WIDE).step_by(7).collect();
+    let points: Vec<DVec3> = pixels
+        .iter()
+        .map(|it| DVec3::new(at(it % WIDE), at(it / WIDE), 0.25))
+        .collect();
+    let mut reference = Renderer::new(&Device::reference()).unwrap();
+    let normals = vec![normal; points.len()];
+    let expected = reference.irradiance(&scene, &points, &normals).unwrap();
+    let brightest = expected
+        .iter()
+        .flatten()
+        .fold(0.0_f32, |most, it| most.max(*it));
+    let off = |text: &str| {
+        let found = drawn(folder.path(), &format!("{text}{stage}"), &uniforms, WIDE)?;
+        let pairs = pixels.iter().zip(&expected).flat_map(|(pixel, expected)| {
+            let found = &found[3 * *pixel as usize..][..3];
+            found
+                .iter()
+                .zip(expected)
+                .map(|(a, b)| f64::from((a - b).abs()))
+                .collect::<Vec<_>>()
+        });
+        Some(pairs.fold(0.0, f64::max) / f64::from(brightest))
+    };
+    let Some(found) = off(&shader.text) else {
+        return println!("skipped: no OpenGL");
+    };
+    println!("{found:e}");
+    assert!(found <= MOST_OFF_OF_IRRADIANCE, "{found:e}");
+    let spoiled = off(&shader.text.replace("max(dot(", "1.001 * max(dot(")).unwrap();
+    assert!(
+        spoiled > MOST_OFF_OF_IRRADIANCE,
+        "a spoiled text passes: {spoiled:e}"
+    );
+    for kind in [
+        "[[torus]]\nmajor_radius = 1\n",
+        "[[segment]]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\ntaper_lengths = [0.5, 0]\n",
+    ] {
+        let scene = Scene::from_toml(&format!("{HEAD}{kind}")).unwrap();
+        let refused = export(&scene, Language::Wgsl, Entry::Irradiance).unwrap_err();
+        assert!(
+            refused.to_string().contains("no irradiance in shaders"),
+            "{refused}"
+        );
+    }
 }

@@ -12,7 +12,7 @@ const SMALL: [&str; 4] = ["--size", "12x8", "--device", "reference"];
 fn all_figures_are_drawn_and_the_page_has_each_beside_its_caption() {
     let folder = Folder::new();
     let arguments = [&["figures", "-o", "new/folder"][..], &SMALL].concat();
-    expect(&folder.run(&arguments), 0, "drawn: 59 figures in ");
+    expect(&folder.run(&arguments), 0, "drawn: 62 figures in ");
     let at = folder.path().join("new/folder");
     let page = fs::read_to_string(at.join("index.html")).unwrap();
     let mut different = Vec::new();

@@ -53,6 +53,7 @@ mod scene_files; // reads again what was written
 mod simulation; // has waves of particles hit things
 mod speaks; // says what it drew, and is quiet
 mod tracks; // draws scenes at times
+mod vdb_volumes; // reads volumes of OpenVDB, and refuses damaged ones
 mod verify; // checks known rays, past sources and past whole scenes
 #[cfg(unix)] // as animate, whose scene they draw
 mod videos; // lays all frames into one file

@@ -172,3 +172,19 @@ fn verify_takes_whole_scenes_with_and_without_a_camera_by_either_measure() {
         expect(&verify(&[row]), 3, words);
     }
 }
+
+#[test]
+fn verify_goes_through_volumes() {
+    let folder = Folder::new();
+    // A light ball larger than its cube: 0.9 in all of it, which is 2 wide.
+    let ball =
+        serde_json::json!({"light_ball": {"radii": [60.0, 61.0, 62.0], "alphas": [0.9, 0.5, 0.1]}});
+    let scene = serde_json::json!({"volume": [ball], "integration": {"measure": "length"}});
+    let row = |exact: f64| serde_json::json!({"scene": scene, "start": [-3.0, 0.1, 0.2], "end": [3.0, 0.1, 0.2], "exact": exact});
+    for (exact, code) in [(1.8, 0), (1.81, 6)] {
+        let rays = serde_json::to_string(&[row(exact)]).unwrap();
+        std::fs::write(folder.path().join("rays.json"), rays).unwrap();
+        let output = folder.run(&["verify", "--rays", "rays.json", "--device", device()]);
+        expect(&output, code, "values within their limits");
+    }
+}

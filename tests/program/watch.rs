@@ -191,6 +191,42 @@ fn files_of_particles_are_watched_as_depths_are() {
 }
 
 #[test]
+fn slices_that_are_painted_or_added_are_drawn() {
+    let mut watch = Watch::of(&text(0.1, ""), &[]);
+    let first = watch.expect_drawn();
+    fs::create_dir(watch.path("slices")).unwrap();
+    let paint = |gray: u8| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        let picture = image::RgbaImage::from_pixel(2, 2, image::Rgba([gray, gray, gray, 255]));
+        picture
+            .write_to(&mut bytes, image::ImageFormat::Png)
+            .unwrap();
+        bytes.into_inner()
+    };
+    watch.save("slices/a.png", paint(100));
+    watch.save("slices/b.png", paint(100));
+    watch.save(
+        "a.toml",
+        text(0.1, "[[volume]]\nslices = \"slices/*.png\"\n"),
+    );
+    let pale = watch.expect_drawn();
+    assert_ne!(pale, first);
+    watch.save("slices/b.png", paint(250));
+    let painted = watch.expect_drawn();
+    assert_ne!(painted, pale);
+    watch.save("slices/c.png", paint(20));
+    assert_ne!(watch.expect_drawn(), painted);
+    watch.save("slices/b.png", "none");
+    assert!(watch.hear("error: ").contains("].slices"));
+    watch.end();
+    let folder = Folder::new();
+    let scene = text(0.1, "[[volume]]\nslices = \"*.png\"\n");
+    fs::write(folder.path().join("a.toml"), scene).unwrap();
+    let output = folder.run(&["watch", "a.toml", "-o", "out.png", "--device", "reference"]);
+    expect(&output, 7, "it is a file that is watched");
+}
+
+#[test]
 fn a_time_and_overrides_hold_for_every_picture() {
     let moving = "{ times = [0, 2], values = [0.1, 0.5] }";
     let scene = |coefficient: f64| {

@@ -6,7 +6,7 @@ struct Wave {
     /* 0 */ rays: vec4f, // |E - S|; beta |E - S|, or 0 without decay; what multiplies all light;
                          // no squared distance to a core is taken below the last
     /* 16 */ eye: vec4f, // last 1, or 0 where rays are parallel
-    /* 32 */ corner: vec4f, // from the eye to the top left corner of the projection plane
+    /* 32 */ corner: vec4f, // from the eye to the top left corner of the plane; last kappa
     /* 48 */ across: vec4f, // from there to the top right corner
     /* 64 */ down: vec4f, // and to the bottom left corner
     /* 80 */ forward: vec4f, // where parallel rays go
@@ -58,9 +58,15 @@ fn zero_along(at: f32, slope: f32, end: f32) -> f32 {
     return clamp(-at / select(slope, 1e-30, abs(slope) < 1e-30), 0.0, end);
 }
 
-// Returns n, whose square is the decay.
+// Returns n, whose powers are decays.
 fn nearness(x: f32) -> f32 {
     return select(1.0, wave.rays.y / (x + wave.rays.y), wave.rays.y > 0.0);
+}
+
+// Returns what is left of light at a place.
+fn fading(x: f32) -> f32 {
+    let n = nearness(x);
+    return n * n;
 }
 
 // Integrals without a closed form: 16 Gauss-Legendre nodes on each side of the place p where a ray is nearest to a core,
@@ -75,15 +81,8 @@ const WEIGHTS = array<f32, 8>(
     0.124628971, 0.095158512, 0.062253524, 0.027152459
 );
 
-// A squared distance where light that has no reach ends.
-const ENDLESS = 1e30;
-
 // Where a ray is nearest, and the distance there.
 struct Peak { place: f32, width: f32 }
-
-fn peak_at(place: f32, distance2: f32, light: Light) -> Peak {
-    return Peak(place, sqrt(max(distance2 + light.core.x, wave.rays.w)));
-}
 
 // Returns the v of a place.
 fn mapped(place: f32, peak: Peak) -> f32 {
@@ -100,8 +99,7 @@ fn faded_field(softened2: f32, x: f32, light: Light) -> f32 {
         field = exp(-bare2 * light.core.w);
     }
     let window = max(1.0 - bare2 * light.core.y, 0.0);
-    let n = nearness(x);
-    return wave.rays.z * n * n * field * window * window;
+    return wave.rays.z * fading(x) * field * window * window;
 }
 
 // The integral of decay times field over a stretch of a ray, in closed form (Abe, Watanabe 2010, eq. 8; Sakai 2006 for
@@ -112,105 +110,9 @@ fn faded_field(softened2: f32, x: f32, light: Light) -> f32 {
 // 2 artanh(m) / sqrt(a): no difference of large terms is left.
 struct Stretch { from_: f32, to: f32, light_from: f32, light_to: f32 }
 
-struct Ends {
-    advance: f32, // of v
-    n0: f32, n1: f32,
-    l0: f32, l1: f32, // n times the light
-    f0: f32, f1: f32, // n times the distance
-    g: f32,           // has (f0 f1)^2 - g^2 = least (rate advance)^2
-    a: f32,           // of f^2 = a v^2 + ..
-}
-
-fn ends_of(q: Quadratic, stretch: Stretch) -> Ends {
-    let x0 = q.rate * (stretch.from_ - q.nearest);
-    let x1 = q.rate * (stretch.to - q.nearest);
-    var ends: Ends;
-    ends.n0 = nearness(stretch.from_);
-    ends.n1 = nearness(stretch.to);
-    ends.advance = (stretch.to - stretch.from_) * ends.n0 * ends.n1;
-    ends.l0 = ends.n0 * stretch.light_from;
-    ends.l1 = ends.n1 * stretch.light_to;
-    ends.f0 = ends.n0 * sqrt(x0 * x0 + q.least);
-    ends.f1 = ends.n1 * sqrt(x1 * x1 + q.least);
-    ends.g = ends.n0 * ends.n1 * (x0 * x1 + q.least);
-    ends.a = q.rate * q.rate;
-    if (wave.rays.y > 0.0) {
-        let pole = q.rate * (wave.rays.y + q.nearest);
-        ends.a = (pole * pole + q.least) / (wave.rays.y * wave.rays.y);
-    }
-    return ends;
-}
-
-// Returns the integral of the light times n / f over v.
-fn inverse_over(ends: Ends, q: Quadratic) -> f32 {
-    let sum = ends.f0 + ends.f1;
-    let ratio = ends.advance / max(sum, 1e-30);
-    let m2 = ends.a * ratio * ratio;
-    // (artanh(m) / m - 1) / m^2: a series where m is small, else half the logarithm of (F + sqrt(a) D)^2 / (F^2 - a D^2),
-    // where F^2 - a D^2 = 2 (f0 f1 + g).
-    var excess = 1.0 / 21.0;
-    for (var odd = 19; odd > 1; odd -= 2) {
-        excess = excess * m2 + 1.0 / f32(odd);
-    }
-    if (m2 >= 0.2) {
-        let whole = sum + sqrt(ends.a) * ends.advance;
-        let turn = q.rate * ends.advance;
-        var parts = vec2f(whole * whole, 2.0 * (ends.f0 * ends.f1 + ends.g));
-        if (ends.g < 0.0) {
-            parts = vec2f(whole * whole * (ends.f0 * ends.f1 - ends.g), 2.0 * q.least * turn * turn);
-        }
-        let artanh = 0.5 * log(parts.x / max(parts.y, 1e-36));
-        let per_m = inverseSqrt(m2);
-        excess = (artanh * per_m - 1.0) * per_m * per_m;
-    }
-    let mean = 0.5 * (ends.l0 + ends.l1);
-    let bent = m2 * mean - 0.5 * (ends.l1 - ends.l0) * (ends.f1 - ends.f0) / max(sum, 1e-30);
-    return 2.0 * ratio * (bent * excess + mean);
-}
-
-// Returns the integral of the light times n^2 / f^2 over v: by four Gauss-Legendre nodes where f hardly changes, else an
-// angle, a logarithm and what is left of the stretch.
-fn inverse_square_over(ends: Ends, q: Quadratic) -> f32 {
-    let d = ends.advance;
-    let rise = (ends.f1 - ends.f0) * (ends.f1 + ends.f0);
-    let bulge = 0.25 * ends.a * d * d;
-    let middle2 = 0.5 * (ends.f0 * ends.f0 + ends.f1 * ends.f1) - bulge;
-    let mean_l = 0.5 * (ends.l0 + ends.l1);
-    let mean_n = 0.5 * (ends.n0 + ends.n1);
-    if (bulge <= 0.1 * middle2) {
-        var sum = 0.0;
-        for (var k = 0; k < 4; k++) {
-            let is_outer = k == 0 || k == 3;
-            let x = select(0.339981044, 0.861136312, is_outer) * select(1.0, -1.0, k < 2);
-            let weight = select(0.652145155, 0.347854845, is_outer);
-            let light = (mean_l + 0.5 * (ends.l1 - ends.l0) * x) * (mean_n + 0.5 * (ends.n1 - ends.n0) * x);
-            sum += weight * light / ((bulge * x + 0.5 * rise) * x + middle2);
-        }
-        return 0.5 * d * sum;
-    }
-    let root = sqrt(q.least) * q.rate;
-    let per_sum = 1.0 / max(ends.f0 * ends.f1 + abs(ends.g), 1e-36);
-    var angle = 2.0 * atan(min(root * d * per_sum, 1.0));
-    angle = select(angle, 3.14159265 - angle, ends.g < 0.0) / max(root, 1e-30);
-    let growth = log(ends.f1 / max(ends.f0, 1e-18));
-    let per_a = 1.0 / max(ends.a, 1e-30);
-    let per_d = 1.0 / max(d, 1e-30);
-    let to_peak = -0.5 * rise * per_a * per_d * per_d; // from the middle, of the stretch
-    let slope_l = ends.l1 - ends.l0;
-    let slope_n = ends.n1 - ends.n0;
-    let peak_l = slope_l * to_peak + mean_l;
-    let peak_n = slope_n * to_peak + mean_n;
-    let curvature = slope_l * slope_n * per_d * per_d * per_a;
-    let slope = (peak_l * slope_n + peak_n * slope_l) * per_d * per_a;
-    let at_peak = peak_l * peak_n - curvature * per_a * root * root;
-    return at_peak * angle + slope * growth + curvature * d;
-}
-
-// Light that ends at a reach h, of a field times (1 - (d/h)^2)^2, and the profiles beside 1/q and 1/q^2.
-//
-// Light that does not fade has a closed form for 1/q^2: with q^2 = x^2 + m, and E the q^2 at which it ends, the window is
-// (E - q^2)^2 / h^4, and what is to be known are the integrals of q^-2, 1 and q^2. They cancel where q^2 hardly changes.
-// There, and for all the rest, 16 nodes serve in x, or in v of x = sqrt(m) sinh(v) on each side of where q is least.
+// Light that ends at a reach h, of a field times (1 - (d/h)^2)^2, the profiles beside 1/q and 1/q^2, and light that fades
+// otherwise than by n^2: 16 nodes in x where q^2 hardly changes, else in v of x = sqrt(m) sinh(v), q^2 = x^2 + m, on each
+// side of where q is least.
 fn shaped_panel(q: Quadratic, light: Light, stretch: Stretch, begin: f32, end: f32, is_flat: bool) -> f32 {
     var nodes = NODES;
     var weights = WEIGHTS;
@@ -254,11 +156,6 @@ fn shaped_over(q: Quadratic, light: Light, whole: Stretch) -> f32 {
     if (is_flat) {
         return shaped_panel(q, light, stretch, from_, to, true);
     }
-    if (light.color.w == 1.0 && wave.rays.y == 0.0 && growth == 0.0) {
-        let rest = (x0 * x0 + x0 * x1 + x1 * x1) / 3.0 + q.least - 2.0 * end2;
-        let whole_field = end2 * end2 * inverse_square_over(ends_of(q, stretch), q) + light_from * rest * (to - from_);
-        return wave.rays.z * light.core.y * light.core.y * whole_field;
-    }
     let peak = Peak(q.nearest, sqrt(q.least) / q.rate);
     let place = mapped(clamp(q.nearest, from_, to), peak);
     return shaped_panel(q, light, stretch, mapped(from_, peak), place, false)
@@ -270,14 +167,7 @@ fn integral_over(q: Quadratic, light: Light, stretch: Stretch) -> f32 {
     if (stretch.to <= stretch.from_) {
         return 0.0;
     }
-    if (light.color.w > 1.0 || light.core.y > 0.0) {
-        return shaped_over(q, light, stretch);
-    }
-    let ends = ends_of(q, stretch);
-    if (light.color.w > 0.0) {
-        return wave.rays.z * inverse_square_over(ends, q);
-    }
-    return wave.rays.z * inverse_over(ends, q);
+    return shaped_over(q, light, stretch);
 }
 
 fn evenly_lit(from_: f32, to: f32) -> Stretch {

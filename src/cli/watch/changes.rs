@@ -1,7 +1,7 @@
 //! Which files were saved: their folders are watched, since most editors put a new file in the place of the old one.
 
 use std::collections::BTreeSet;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -45,7 +45,7 @@ impl Changes {
         Ok(changes)
     }
 
-    /// Hears changes of further files, and of what they link to.
+    /// Hears changes of further files, and of what they link to; a `*` in a name stands for whatever is there.
     pub fn add(&mut self, files: &[PathBuf]) -> Result<(), Error> {
         let links = files.iter().filter_map(|file| file.canonicalize().ok());
         for file in files.iter().cloned().chain(links) {
@@ -108,6 +108,19 @@ impl Changes {
             _ => true,
         };
         let mut names = event.paths.iter().filter_map(|path| path.file_name());
-        is_written && (event.need_rescan() || names.any(|name| self.names.contains(name)))
+        let is_heard = |name: &OsStr| self.names.iter().any(|known| is_one_of(known, name));
+        is_written && (event.need_rescan() || names.any(is_heard))
+    }
+}
+
+/// Returns whether a name is the known one, in which a `*` stands for whatever is there.
+pub fn is_one_of(known: &OsStr, name: &OsStr) -> bool {
+    let (known, name) = (known.to_string_lossy(), name.to_string_lossy());
+    match known.split_once('*') {
+        None => known == name,
+        Some((before, after)) => {
+            let has_room = name.len() >= before.len() + after.len();
+            has_room && name.starts_with(before) && name.ends_with(after)
+        }
     }
 }

@@ -10,7 +10,7 @@ use energywave::scene::{AnimatedScene, MethodKeys};
 use energywave::{Device, Error, ErrorKind, RadianceImage, Renderer, Scene};
 
 use super::WatchArguments;
-use super::changes::Changes;
+use super::changes::{Changes, is_one_of};
 use crate::cli::progress::was_interrupted;
 use crate::cli::{choose_devices, note, warn_all};
 
@@ -48,7 +48,7 @@ impl Pictures {
         files.extend(arguments.overrides.depth.clone());
         let changes = Changes::of(&files)?;
         match AnimatedScene::from_file(&arguments.scene) {
-            Ok(scene) => files.extend(scene.files()),
+            Ok(scene) => files.extend(scene.files().into_iter().chain(scene.slices())),
             Err(error) if error.kind() == ErrorKind::Input => return Err(error.into()),
             Err(_) => {} // which is told when it is to be drawn
         }
@@ -104,6 +104,7 @@ impl Pictures {
         self.arguments.overrides.opened_depth.forget();
         let moving = AnimatedScene::from_file(&self.arguments.scene)?;
         self.changes.add(&moving.files())?;
+        self.changes.add(&moving.slices())?;
         self.moving = Some(moving);
         Ok(())
     }
@@ -180,7 +181,19 @@ impl Pictures {
 fn refuse_output(output: &Path, files: &[PathBuf]) -> Result<(), Error> {
     let place = |file: &Path| file.canonicalize().ok();
     let is_it = |file: &PathBuf| place(file).is_some() && place(file) == place(output);
-    match files.iter().any(is_it) {
+    let folder = |file: &Path| {
+        place(
+            file.parent()
+                .filter(|it| *it != Path::new(""))
+                .unwrap_or(Path::new(".")),
+        )
+    };
+    let is_slice = |file: &PathBuf| {
+        let names = file.file_name().zip(output.file_name());
+        names.is_some_and(|(slices, name)| is_one_of(slices, name))
+            && folder(file) == folder(output)
+    };
+    match files.iter().any(|file| is_it(file) || is_slice(file)) {
         true => Err(Error::output(output, "it is a file that is watched")),
         false => Ok(()),
     }

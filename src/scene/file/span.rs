@@ -48,15 +48,26 @@ impl AnimatedScene {
         let depth = file.depth.as_ref().map(DepthTable::file);
         let surfaces = file.metaballs.iter().filter_map(MetaballsTable::file);
         let lights = file.particles.iter().filter_map(ParticlesTable::file);
-        let cells = file.volume.iter().filter_map(VolumeTable::file);
         let images = depth.into_iter().chain(file.display.background_file());
-        let named = images.chain(surfaces).chain(lights).chain(cells);
+        let named = images.chain(surfaces).chain(lights);
         let named = named.map(|file| motion.folder.join(file));
         let meshes = file.mesh.iter();
         let meshes = meshes.flat_map(|mesh| mesh.files(&motion.folder));
         let hit = file.collider.iter();
         let hit = hit.flat_map(|collider| collider.files(&motion.folder));
-        named.chain(meshes).chain(hit).collect()
+        let cells = file.volume.iter();
+        let cells = cells.flat_map(|volume| volume.files(&motion.folder));
+        named.chain(meshes).chain(hit).chain(cells).collect()
+    }
+
+    /// Returns the paths with `*` in their names whose pictures are slices of volumes: files may be added there.
+    #[must_use]
+    pub fn slices(&self) -> Vec<PathBuf> {
+        let Document { file, motion } = &self.document;
+        let volumes = file.volume.iter();
+        volumes
+            .filter_map(|volume| volume.slices(&motion.folder))
+            .collect()
     }
 }
 

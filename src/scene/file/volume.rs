@@ -60,7 +60,7 @@ struct BallTable {
 
 // What is read of `[[volume]]`.
 keys! { pub(in crate::scene) VOLUME_KEYS;
-    file: File, NONE, Otherwise("slices or light_ball"), "cells: .nrrd, .vti, or .raw with a .json beside it";
+    file: File, NONE, Otherwise("slices or light_ball"), "cells: .vdb, .nrrd, .vti, or .raw with a .json beside it";
     slices: File, NONE, Otherwise("file or light_ball"),
         "pictures of slices, sorted by name, .png or .exr, such as \"slices/*.png\"";
     light_ball: Table("light_ball"), NONE, Otherwise("file or slices"), "a ball of three shells (2006)";
@@ -137,9 +137,22 @@ impl BallTable {
 }
 
 impl VolumeTable {
-    /// Returns the file of its cells, if it names one, from the folder of the scene.
-    pub(super) fn file(&self) -> Option<&Path> {
-        self.file.as_deref()
+    /// Returns the files of its cells, which are from `folder`.
+    pub(super) fn files(&self, folder: &Path) -> Vec<PathBuf> {
+        let file = self.file.as_ref().map(|file| folder.join(file));
+        let raw = file
+            .iter()
+            .filter(|it| it.extension().is_some_and(|it| it == "raw"));
+        let beside: Vec<PathBuf> = raw.map(|it| it.with_extension("json")).collect();
+        let slices = self
+            .slices(folder)
+            .map_or(Vec::new(), |it| Texture::slice_files(&it));
+        file.into_iter().chain(beside).chain(slices).collect()
+    }
+
+    /// Returns the path with `*` of its slices, which is from `folder`.
+    pub(super) fn slices(&self, folder: &Path) -> Option<PathBuf> {
+        self.slices.as_ref().map(|slices| folder.join(slices))
     }
 
     /// Makes a volume as it is written; `None` if its cells are in no file.

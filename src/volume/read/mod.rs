@@ -6,10 +6,11 @@ mod nrrd;
 #[cfg(feature = "json")]
 mod raw;
 mod slices;
+mod vdb;
 mod vti;
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
@@ -18,7 +19,7 @@ use crate::error::{Error, Result, SceneError};
 use crate::shown::shown;
 
 /// What files of volumes there are.
-const ENDINGS: &str = ".nrrd, .vti or .raw";
+const ENDINGS: &str = ".vdb, .nrrd, .vti or .raw";
 
 /// What is wrong with a file, or what there is too little of.
 pub(super) enum Fault {
@@ -78,7 +79,7 @@ impl Dense {
 }
 
 impl Texture {
-    /// Reads the file of a volume: .nrrd, .vti, or .raw with a .json beside it.
+    /// Reads the file of a volume: .vdb, .nrrd, .vti, or .raw with a .json beside it.
     ///
     /// # Errors
     /// [`Error::Scene`] with the key `file` if the file cannot be read or holds no volume; [`Error::OutOfMemory`].
@@ -105,16 +106,22 @@ impl Texture {
     pub fn open_slices(pattern: impl AsRef<Path>) -> Result<Self> {
         slices::open(pattern.as_ref())
     }
+
+    /// Returns the pictures of slices that there are.
+    pub(crate) fn slice_files(pattern: &Path) -> Vec<PathBuf> {
+        slices::named(pattern).unwrap_or_default()
+    }
 }
 
 fn open(path: &Path) -> Read<Texture> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let ending = ending.to_lowercase();
-    if !["nrrd", "vti", "raw"].contains(&ending.as_str()) {
+    if !["vdb", "nrrd", "vti", "raw"].contains(&ending.as_str()) {
         return Err(format!(": volumes are in files that end in {ENDINGS}").into());
     }
     let bytes = fs::read(path).map_err(|error| format!(": cannot read: {error}"))?;
     match ending.as_str() {
+        "vdb" => vdb::read(&bytes)?.texture(),
         "nrrd" => nrrd::read(&bytes)?.texture(),
         "vti" => vti::read(&bytes)?.texture(),
         #[cfg(feature = "json")]

@@ -66,7 +66,7 @@ fn read(file: &Path) -> Result<RadianceImage> {
 }
 
 /// Returns the files whose names fit a path with one `*` in its name, sorted.
-fn named(pattern: &Path) -> std::result::Result<Vec<PathBuf>, String> {
+pub(super) fn named(pattern: &Path) -> std::result::Result<Vec<PathBuf>, String> {
     let name = pattern.file_name().unwrap_or_default().to_string_lossy();
     let text = pattern.display().to_string();
     let Some((before, after)) = name.split_once('*') else {

@@ -144,7 +144,7 @@ class Renderer:
 
         Raises:
             SceneError: also for a ray that is shorter than 1e-9 or beyond 1e9.
-            UnsupportedError: for arrays that are no points, and for scenes with volumes.
+            UnsupportedError: for arrays that are no points.
         """
         begins, ends = np.broadcast_arrays(_points("origins", origins), _points("ends", ends))
         shape = begins.shape
