@@ -169,7 +169,8 @@ impl Overrides {
     }
 }
 
-fn word<T: Copy>(name: &str, value: &Bound<'_, PyAny>, words: &[(&str, T)]) -> PyResult<T> {
+/// Reads a word that stands for something.
+pub fn word<T: Copy>(name: &str, value: &Bound<'_, PyAny>, words: &[(&str, T)]) -> PyResult<T> {
     let given: String = value.extract()?;
     let found = words.iter().find(|(word, _)| *word == given);
     found.map(|(_, meant)| *meant).ok_or_else(|| {

@@ -6,6 +6,8 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ._host import HostDepth
+
 _Overrides = Mapping[str, object]
 _Progress = Optional[Callable[[float], object]]
 _Record = Dict[str, Any]
@@ -62,5 +64,10 @@ class Renderer:
         self, scene: OpenedScene, points: NDArray[np.float64], normals: NDArray[np.float64], overrides: _Overrides
     ) -> NDArray[np.float32]: ...
     def enqueue(
-        self, scene: OpenedScene, target: Any, is_image: bool, wait_for: List[Any], overrides: _Overrides
+        self,
+        scene: OpenedScene,
+        target: Tuple[Any, bool],
+        depth: Optional[HostDepth],
+        wait_for: List[Any],
+        overrides: _Overrides,
     ) -> int: ...

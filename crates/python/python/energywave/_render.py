@@ -11,6 +11,7 @@ from . import _energywave
 from ._animation import Animation
 from ._devices import Device
 from ._errors import make
+from ._host import HostDepth, is_image
 from ._scene import open_scene
 
 if TYPE_CHECKING:
@@ -218,28 +219,37 @@ class Renderer:
         return Animation(self, open_scene(scene), fps, frames, progress, overrides)
 
     def enqueue(
-        self, scene: Any, target: Any, *, wait_for: Iterable[Any] = (), **overrides: "Unpack[Overrides]"
+        self,
+        scene: Any,
+        target: Any,
+        *,
+        depth: Any = None,
+        wait_for: Iterable[Any] = (),
+        **overrides: "Unpack[Overrides]",
     ) -> Any:
         """Enqueues a frame that is drawn into memory of pyopencl's, on a renderer that was made with a ``queue``.
 
-        Nothing is read back, and nothing waits but for the compiler, the first time. What comes after it on an in-order
-        queue waits for the frame.
+        Nothing is read back, and nothing waits but for the compiler, the first time, and where surfaces of a scene meet
+        depths. What comes after it on an in-order queue waits for the frame.
 
         Args:
             target: a ``pyopencl.Buffer`` of 16 * width * height bytes (float32 RGBA), or a 2D ``pyopencl.Image`` of
                 RGBA with float32 or half floats; READ_WRITE.
+            depth: depths that end the rays, in the place of the scene's own: a :class:`HostDepth`, or a buffer or an
+                image of lengths along the rays.
             wait_for: events that the frame waits for.
 
         Returns:
-            The ``pyopencl.Event`` of its end. Nothing else may use the target until then.
+            The ``pyopencl.Event`` of its end. Until then nothing else may use the target, and nothing write the depths.
 
         Raises:
-            HostError: for a target or an event that doesn't fit; nothing was enqueued.
+            HostError: for a target, depths or an event that don't fit; nothing was enqueued.
         """
         import pyopencl
 
-        is_image = isinstance(target, pyopencl.Image)
-        event = self._native.enqueue(open_scene(scene), target, is_image, list(wait_for), overrides)
+        depths = None if depth is None else HostDepth.of(depth)
+        into = (target, is_image(target))
+        event = self._native.enqueue(open_scene(scene), into, depths, list(wait_for), overrides)
         return pyopencl.Event.from_int_ptr(event, retain=False)
 
 
