@@ -70,6 +70,15 @@ impl Depth {
     }
 }
 
+/// Sets in the environment what drivers need and lack, as the program does: PoCL's threads, its linker, its cache. What
+/// it returns the user should know. The package calls it when it is imported.
+#[pyfunction]
+pub fn suit_drivers() -> Vec<String> {
+    // SAFETY: Python's lock is held, under which Python itself changes the environment (`os.environ`); threads that
+    // read it at this moment without the lock would be at odds with Python, too.
+    unsafe { energywave::suit_pocl() }
+}
+
 /// Returns the handle that an object of pyopencl's has.
 fn handle(object: &Bound<'_, PyAny>, place: &str) -> PyResult<usize> {
     let pointer = object

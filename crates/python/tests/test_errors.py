@@ -166,3 +166,31 @@ def test_without_opencl_the_reference_draws_and_says_so(tmp_path):
     no_vendors.pop("ENERGYWAVE_DEVICE", None)
     subprocess.run([sys.executable, "-c", WITHOUT_OPENCL], check=True, cwd=tmp_path, env=no_vendors)
     assert (tmp_path / "light.png").stat().st_size > 100
+
+
+SUITED = """
+import ctypes, warnings
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    import energywave as ew
+getenv = ctypes.CDLL(None).getenv
+getenv.restype = ctypes.c_char_p
+print(getenv(b"POCL_AFFINITY"), [str(it.message) for it in caught if it.category is RuntimeWarning])
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="PoCL's threads are pinned on Linux alone")
+def test_pocl_gets_what_it_needs_unless_the_user_has_chosen(tmp_path):
+    def suited(**variables):
+        bare = {name: value for name, value in os.environ.items() if name != "POCL_AFFINITY"}
+        command = [sys.executable, "-c", SUITED]
+        return subprocess.run(command, env=bare | variables, check=True, capture_output=True, text=True).stdout
+
+    cores = os.sched_getaffinity(0)
+    is_ours = len(cores) > 1 and cores == set(range(len(cores)))
+    assert suited() == f"{b'1' if is_ours else None} []\n"
+    assert suited(POCL_AFFINITY="0") == "b'0' []\n"
+    file = tmp_path / "file"
+    file.touch()
+    said = suited(POCL_AFFINITY="0", POCL_CACHE_DIR=str(file))
+    assert "PoCL's cache" in said and str(file) in said
