@@ -100,7 +100,10 @@ fn handle(object: &Bound<'_, PyAny>, place: &str) -> PyResult<usize> {
 
 /// Makes a renderer on the context and the device of a queue.
 pub fn renderer_on(py: Python<'_>, queue: &Bound<'_, PyAny>) -> PyResult<energywave::Renderer> {
-    let context = queue.getattr("context")?;
+    let context = queue.getattr("context").map_err(|_| {
+        let reason = format!("{} has no context", queue.get_type());
+        misuse(py, "queue", &reason, "give a pyopencl.CommandQueue")
+    })?;
     let (context_handle, queue_handle) = (handle(&context, "context")?, handle(queue, "queue")?);
     let opened = py.detach(|| {
         let context = context_handle as *mut c_void;

@@ -66,6 +66,40 @@ def test_other_faults_have_classes_that_python_knows(scene, tmp_path):
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.parametrize(
+    "keywords",
+    [dict(size=3), dict(size=(3.5, 4)), dict(size=(-3, 4)), dict(size=(3, 4, 5)), dict(width="x"), dict(t="1")]
+    + [dict(tolerance="x"), dict(divisions=2.5), dict(method=3), dict(antialias=[1]), dict(exposure="Auto")],
+)
+def test_a_keyword_of_a_wrong_kind_is_named(scene, keywords):
+    (name,) = keywords
+    error = fault(scene, **keywords)
+    assert isinstance(error, ew.UnsupportedError) and error.place == name and str(error).startswith(f"{name}: ")
+    assert error.remedy.startswith(("give ", "use "))
+
+
+def test_arrays_that_do_not_fit_are_named(scene, renderer):
+    right = np.zeros((48, 64, 4), np.float32)
+    fixed = right.copy()
+    fixed.flags.writeable = False
+    wrong = [fixed, right.astype(float), right[:47], right[..., 0], np.zeros((48, 128, 4), np.float32)[:, ::2], [1, 2]]
+    for array in wrong:
+        with pytest.raises(ew.UnsupportedError, match="^array: ") as raised:
+            renderer.render_into(scene, array)
+        assert raised.value.place == "array"
+    renderer.render_into(scene, right)
+    three, four = np.zeros((3, 3)), np.ones((4, 3))
+    for place, call in [
+        ("ends", lambda: renderer.integrate(scene, three, four)),
+        ("origins", lambda: renderer.integrate(scene, "abc", four)),
+        ("normals", lambda: renderer.irradiance(scene, three, four)),
+        ("queue", lambda: ew.Renderer(queue=3)),
+    ]:
+        with pytest.raises(ew.UnsupportedError, match=f"^{place}: ") as raised:
+            call()
+        assert raised.value.place == place
+
+
 def test_exceptions_come_whole_out_of_another_process(scene):
     error = fault(scene, divisions=3)
     other = pickle.loads(pickle.dumps(error))
