@@ -1,6 +1,6 @@
 """Draws every scene by every runner at every setting, and says how wrong the light is and how long a frame takes.
 
-run.py [--out results.json] [--plot FOLDER] [--runners NAME,..] [--scenes NAME,..] [--seconds 1.0]
+run.py [--out results.json] [--plot FOLDER] [--record FOLDER] [--runners NAME,..] [--scenes NAME,..] [--seconds 1.0]
 """
 
 import argparse
@@ -61,14 +61,36 @@ def table(rows: list[dict]) -> str:
     return "\n".join(lines)
 
 
+def record(result: dict, folder: Path) -> None:
+    """Writes what a run gave into a folder: results.json, plot.svg, and a README.md with the table."""
+    from plot import draw_overview
+
+    folder.mkdir(parents=True, exist_ok=True)
+    machine, rows = result["machine"], result["rows"]
+    lines = ",\n".join(json.dumps(row) for row in rows)
+    (folder / "results.json").write_text(f'{{"machine": {json.dumps(machine)},\n"rows": [\n{lines}\n]}}\n')
+    draw_overview(rows, folder / "plot.svg")
+    load = machine["load_before"]
+    busy = "**Loaded:** other work ran, and times are too long. " if load > 0.5 else ""
+    (folder / "README.md").write_text(
+        f"# Error against time, {machine['date']}\n\n"
+        f"{busy}Load before the run {load:.1f}, {machine['cpus']} cores, {machine['system']}; "
+        f"every setting for {machine['seconds']} s. [What is measured](../../README.md#what-is-measured).\n\n"
+        f"![](plot.svg)\n\n{table(rows)}\n"
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("results.json"))
     parser.add_argument("--plot", type=Path, help="folder for an SVG of each scene")
+    parser.add_argument("--record", type=Path, help="folder for results.json, a table and one SVG of all scenes")
     parser.add_argument("--runners", help="names of files in runners/, with commas between")
     parser.add_argument("--scenes", help="names of files in scenes/, with commas between")
     parser.add_argument("--seconds", type=float, default=1.0, help="how long each setting is drawn")
     arguments = parser.parse_args()
+    machine = {"cpus": os.cpu_count(), "load_before": os.getloadavg()[0], "system": f"{platform.system()} {platform.machine()}"}
+    machine |= {"date": time.strftime("%Y-%m-%d"), "seconds": arguments.seconds}
     runners = load(arguments.runners.split(",") if arguments.runners else None)
     rows = []
     for name in arguments.scenes.split(",") if arguments.scenes else names():
@@ -82,13 +104,15 @@ def main() -> None:
                 row = {"scene": name, "runner": runner.name, "setting": setting, **times, **errors(scene, frame)}
                 rows.append(row)
                 print(f"{name}: {runner.name} {setting}: {1e3 * times['best_s']:.3g} ms, {row['p99']:.1e}", flush=True)
-    machine = {"cpus": os.cpu_count(), "load": os.getloadavg(), "system": platform.platform()}
-    arguments.out.write_text(json.dumps({"machine": machine, "rows": rows}, indent=1) + "\n")
+    result = {"machine": machine, "rows": rows}
+    arguments.out.write_text(json.dumps(result, indent=1) + "\n")
     print(table(rows))
     if arguments.plot:
         from plot import draw_all
 
         draw_all(rows, arguments.plot)
+    if arguments.record:
+        record(result, arguments.record)
 
 
 if __name__ == "__main__":

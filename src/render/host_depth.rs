@@ -5,7 +5,7 @@ use glam::DMat4;
 use crate::error::{Error, Result};
 use crate::image::{ClipDepth, ClipRange, DepthAlong};
 use crate::opencl::{ClipValues, Compute, DepthValues, HostDepthMemory, HostDepths, unfit};
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene};
 
 /// Depths of a frame's pixels in a host's own memory, for
 /// [`Renderer::enqueue_behind`](crate::Renderer::enqueue_behind): nothing of them is read back. They take the place of
@@ -59,6 +59,26 @@ impl HostDepth {
             clip: Some(*clip),
             ..Self::new(memory, along)
         }
+    }
+
+    /// Takes lengths, or depths of clip space behind the projection of a camera's matrices; rows from the top.
+    ///
+    /// # Errors
+    /// [`Error::Host`] for depths of clip space where the camera has no matrices; [`Error::Scene`] where their
+    /// projection gives no depth.
+    pub fn of_camera(
+        memory: impl Into<HostDepthMemory>,
+        along: DepthAlong,
+        camera: &Camera,
+    ) -> Result<Self> {
+        if along.is_length() {
+            return Ok(Self::new(memory, along));
+        }
+        let Some(matrices) = &camera.matrices else {
+            let reason = "lengths along clip space without a projection; give the camera view and projection";
+            return Err(unfit("depth", reason));
+        };
+        Ok(Self::from_clip(memory, along, &matrices.clip_depth()?))
     }
 
     /// Returns what kernels are told of the values.

@@ -13,6 +13,7 @@ mod layers;
 mod moments;
 mod one;
 mod over;
+mod ray_order;
 mod rays;
 mod referenced;
 mod seen;

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::{Renderer, RendererBackend};
+use super::{Renderer, RendererBackend, ray_order};
 use crate::error::{Error, Result, SceneError};
 use crate::reference::{Tracer, particle_light, volume_light};
 use crate::scene::{List, Method, Ray, Scene};
@@ -86,25 +86,49 @@ impl Renderer {
             Method::Jittered { .. } => rays.len().max(1),
             _ => AT_ONCE,
         };
-        let mut lights = Vec::with_capacity(rays.len());
-        for part in rays.chunks(at_once) {
-            if !lights.is_empty() {
+        let mut lights = vec![[0.0; 3]; rays.len()];
+        let parts = rays.chunks(at_once).zip(lights.chunks_mut(at_once));
+        for (number, (part, lights)) in parts.enumerate() {
+            if number > 0 {
                 self.cost_before = self.cost_before.then(self.cost_of_part());
             }
-            let (before, of_part) = (lights.len() as f32, part.len() as f32);
+            let (before, of_part) = ((number * at_once) as f32, part.len() as f32);
             let report = &mut |share: f32| progress((before + share * of_part) / rays.len() as f32);
-            let pixels = match &mut self.backend {
-                RendererBackend::OpenCl(renderer) => renderer.integrate(scene, part, report)?,
-                RendererBackend::Several(renderer) => renderer.integrate(scene, part, report)?,
-                RendererBackend::Reference { .. } => Vec::new(), // has returned
-            };
-            let measure = |ray: &Ray| scene.integration.scale(ray.span.length());
-            lights.extend(pixels.iter().zip(part).map(|(pixel, ray)| {
-                let [red, green, blue, _] = *pixel;
-                [red, green, blue].map(|light| measure(ray) * f64::from(light))
-            }));
+            self.integrate_part(scene, part, lights, report)?;
         }
         Ok(lights)
+    }
+
+    /// Integrates along some valid rays on devices.
+    fn integrate_part(
+        &mut self,
+        scene: &Scene,
+        rays: &[Ray],
+        lights: &mut [[f64; 3]],
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
+        // Sums and closed forms take as long for rays at random.
+        let has_closed_forms =
+            scene.tori.is_empty() && scene.curves.is_empty() && scene.paths.is_empty();
+        let order = match scene.integration.method {
+            Method::Exact { .. } if !has_closed_forms => Some(ray_order::alike(rays)),
+            _ => None,
+        };
+        let ordered: Option<Vec<Ray>> = order
+            .as_ref()
+            .map(|order| order.iter().map(|place| rays[*place as usize]).collect());
+        let given = ordered.as_deref().unwrap_or(rays);
+        let pixels = match &mut self.backend {
+            RendererBackend::OpenCl(renderer) => renderer.integrate(scene, given, progress)?,
+            RendererBackend::Several(renderer) => renderer.integrate(scene, given, progress)?,
+            RendererBackend::Reference { .. } => Vec::new(), // draws by itself
+        };
+        for (index, ([red, green, blue, _], ray)) in pixels.into_iter().zip(given).enumerate() {
+            let place = order.as_ref().map_or(index, |order| order[index] as usize);
+            let measure = scene.integration.scale(ray.span.length());
+            lights[place] = [red, green, blue].map(|light| measure * f64::from(light));
+        }
+        Ok(())
     }
 }
 

@@ -127,15 +127,29 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
 }
 
 #if KIND_HAS(two_panels)
-// Integrates the two panels on both sides of a cut at once, so that one works while the other waits, and returns
-// whether both are resolved.
-INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold, const floatv cut,
-                            floatv *const integral) {
-    const floatv begin = peaks->begin, end = peaks->end;
+#if LANES > 1
+// Opens the halves of a panel in place of it, and returns which lanes have them; others are done with it.
+INLINE intv KIND_halve(const PanelSum *const sum, const floatv from, const floatv to, const intv has_panel,
+                       floatv *const all_from, floatv *const all_to) {
+    const floatv cut = sum->middle;
+    const intv is_cut = (cut > from) & (cut < to) & has_panel;
+    all_from[0] = select(from, cut, is_cut), all_to[0] = select(from, to, is_cut);
+    all_from[1] = from, all_to[1] = select(from, cut, is_cut);
+    return is_cut;
+}
+#endif
+
+// Integrates the two panels on both sides of a cut at once, so that one works while the other waits. Returns how many
+// panels are open then, in the place of the two: of vectors the halves of each that a lane has not resolved.
+// `integral` gets what is done, `estimate` everything.
+INLINE uint KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold,
+                            floatv *const all_from, floatv *const all_to, floatv *const integral,
+                            floatv *const estimate, intv *const own_cuts) {
+    const floatv begin = peaks->begin, cut = all_to[1], end = peaks->end;
 #if LANES == 1
     // One after the other, from one copy of the code: other work-items work while one waits.
     floatv unresolved = 0.0f;
-    *integral = 0.0f;
+    *estimate = 0.0f;
 #pragma unroll 1
     for (int k = 0; k < 2; ++k) {
         const floatv from = k == 0 ? begin : cut, to = k == 0 ? cut : end;
@@ -143,10 +157,13 @@ INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
             continue;
         KIND_panel panel = KIND_open_panel(peaks, decay, from, to);
         const PanelSum sum = KIND_sum_panel(peaks, decay, &panel);
-        *integral += sum.integral;
+        *estimate += sum.integral;
         unresolved = max(unresolved, sum.unresolved);
     }
-    return !is_beyond(unresolved, threshold * *integral);
+    if (is_beyond(unresolved, threshold * *estimate))
+        return 2;
+    *integral = *estimate;
+    return 0;
 #else
     const intv has_first = !is_empty_panel(decay, begin, cut), has_second = !is_empty_panel(decay, cut, end);
     const floatv first_end = select(begin + 1.0f, cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
@@ -155,11 +172,27 @@ INLINE bool KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
     KIND_panel second = KIND_open_panel(peaks, decay, second_begin, second_end);
     const PanelSum of_first = KIND_sum_panel(peaks, decay, &first);
     const PanelSum of_second = KIND_sum_panel(peaks, decay, &second);
-    *integral = select(splat(0.0f), of_first.integral, has_first) + select(splat(0.0f), of_second.integral, has_second);
-    const floatv allowed = threshold * *integral;
-    const intv is_rough =
-        (is_beyond(of_first.unresolved, allowed) & has_first) | (is_beyond(of_second.unresolved, allowed) & has_second);
-    return !any_lane(is_rough);
+    const floatv first_part = select(splat(0.0f), of_first.integral, has_first);
+    const floatv second_part = select(splat(0.0f), of_second.integral, has_second);
+    *estimate = first_part + second_part;
+    const floatv allowed = threshold * *estimate;
+    const intv first_is_rough = is_beyond(of_first.unresolved, allowed) & has_first;
+    const intv second_is_rough = is_beyond(of_second.unresolved, allowed) & has_second;
+    intv has_halves = (intv)(0);
+    uint open = 0;
+    if (MOST_CUTS > 0 && any_lane(second_is_rough)) {
+        has_halves = KIND_halve(&of_second, cut, end, has_second, all_from, all_to);
+        open = 2;
+    }
+    *integral = select(second_part, splat(0.0f), has_halves);
+    has_halves = (intv)(0);
+    if (MOST_CUTS > 0 && any_lane(first_is_rough)) {
+        has_halves = KIND_halve(&of_first, begin, cut, has_first, all_from + open, all_to + open);
+        open += 2;
+    }
+    *integral += select(first_part, splat(0.0f), has_halves);
+    *own_cuts += select((intv)(0), (intv)(1), first_is_rough) + select((intv)(0), (intv)(1), second_is_rough);
+    return open;
 #endif
 }
 #endif
@@ -239,12 +272,7 @@ INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadratu
 #if KIND_HAS(two_panels)
     if (!has_end) {
         nodes += 4 * GAUSS_PAIRS;
-        floatv both;
-        if (KIND_two_panels(&peaks, decay, threshold, all_to[1], &both)) {
-            open = 0;
-            integral = both;
-        }
-        estimate = both;
+        open = KIND_two_panels(&peaks, decay, threshold, all_from, all_to, &integral, &estimate, &own_cuts);
     }
 #endif
     const uint all = open;

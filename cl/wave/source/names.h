@@ -46,6 +46,7 @@
 #define KIND_panel JOIN(KIND, _panel) // ../quadrature/adaptive.h, with what follows
 #define KIND_open_panel JOIN(KIND, _open_panel)
 #define KIND_sum_panel JOIN(KIND, _sum_panel)
+#define KIND_halve JOIN(KIND, _halve)
 #define KIND_two_panels JOIN(KIND, _two_panels)
 #define KIND_at_end JOIN(KIND, _at_end) // ../tiles/settle.h
 #define KIND_settle JOIN(KIND, _settle)

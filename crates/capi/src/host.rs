@@ -99,14 +99,7 @@ impl Frame {
                 return Err(bad_argument("frame.depth_along", &reason));
             }
         };
-        let mut depth = match (along.is_length(), &scene.camera.matrices) {
-            (true, _) => HostDepth::new(memory, along),
-            (false, Some(matrices)) => HostDepth::from_clip(memory, along, &matrices.clip_depth()?),
-            (false, None) => {
-                let reason = "the scene's camera has no matrices; give it view and projection";
-                return Err(bad_argument("frame.depth_along", reason));
-            }
-        };
+        let mut depth = HostDepth::of_camera(memory, along, &scene.camera)?;
         if self.depth_scale != 0.0 {
             depth.scale = self.depth_scale;
         }

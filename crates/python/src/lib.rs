@@ -20,6 +20,8 @@ mod _energywave {
     #[pymodule_export]
     use super::devices::devices;
     #[pymodule_export]
+    use super::opencl::suit_drivers;
+    #[pymodule_export]
     use super::picture::{save, tone_map};
     #[pymodule_export]
     use super::renderer::Renderer;

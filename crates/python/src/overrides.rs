@@ -3,6 +3,7 @@
 use energywave::image::{Display, Exposure, ImageSize};
 use energywave::scene::{Antialias, Method, MethodKeys, Sampling, Scene};
 use energywave::{Error, Result, nearest};
+use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -58,13 +59,14 @@ impl Overrides {
     }
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        let pixels = "give a whole number of pixels";
         match name {
             "size" => {
-                let (width, height) = value.extract()?;
+                let (width, height) = read(name, value, "give (width, height), pixels")?;
                 (self.width, self.height) = (Some(width), Some(height));
             }
-            "width" => self.width = Some(value.extract()?),
-            "height" => self.height = Some(value.extract()?),
+            "width" => self.width = Some(read(name, value, pixels)?),
+            "height" => self.height = Some(read(name, value, pixels)?),
             "method" => {
                 let words = [
                     ("exact", MethodName::Exact),
@@ -73,8 +75,8 @@ impl Overrides {
                 ];
                 self.method = Some(word(name, value, &words)?);
             }
-            "divisions" => self.divisions = Some(value.extract()?),
-            "tolerance" => self.tolerance = Some(value.extract()?),
+            "divisions" => self.divisions = Some(read(name, value, "give a whole number")?),
+            "tolerance" => self.tolerance = Some(read(name, value, "give a number")?),
             "sampling" => {
                 let words = [("tiles", Sampling::Tiles), ("pixels", Sampling::Pixels)];
                 self.sampling = Some(word(name, value, &words)?);
@@ -92,7 +94,7 @@ impl Overrides {
                     Err(_) => word(name, value, &[("auto", Exposure::Auto)])?,
                 });
             }
-            "t" => self.time = value.extract()?,
+            "t" => self.time = read(name, value, "give seconds, a number")?,
             _ => return Err(unknown(name)),
         }
         Ok(())
@@ -169,21 +171,35 @@ impl Overrides {
     }
 }
 
-fn word<T: Copy>(name: &str, value: &Bound<'_, PyAny>, words: &[(&str, T)]) -> PyResult<T> {
-    let given: String = value.extract()?;
-    let found = words.iter().find(|(word, _)| *word == given);
+/// Reads a value.
+fn read<'py, T: FromPyObjectOwned<'py>>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    remedy: &str,
+) -> PyResult<T> {
+    value.extract().map_err(|_| unfit(name, value, remedy))
+}
+
+fn unfit(name: &str, value: &Bound<'_, PyAny>, remedy: &str) -> PyErr {
+    let shown = value.repr().map(|repr| repr.to_string());
+    let shown = shown.unwrap_or_else(|_| value.get_type().to_string());
+    let reason = format!("{} is no value of it", energywave::shown(&shown));
+    misuse(value.py(), name, &reason, remedy)
+}
+
+/// Reads a word that stands for something.
+pub fn word<T: Copy>(name: &str, value: &Bound<'_, PyAny>, words: &[(&str, T)]) -> PyResult<T> {
+    let given: Option<String> = value.extract().ok();
+    let found = words
+        .iter()
+        .find(|(word, _)| Some(*word) == given.as_deref());
     found.map(|(_, meant)| *meant).ok_or_else(|| {
         let known: Vec<String> = words
             .iter()
             .map(|(word, _)| format!("\"{word}\""))
             .collect();
-        let shown = energywave::shown(&given);
-        misuse(
-            value.py(),
-            name,
-            &format!("\"{shown}\" is no word for it"),
-            &format!("use {}", known.join(" or ")),
-        )
+        let number = if name == "exposure" { "stops, or " } else { "" };
+        unfit(name, value, &format!("use {number}{}", known.join(" or ")))
     })
 }
 

@@ -267,13 +267,13 @@ impl Renderer {
         &self,
         py: Python<'py>,
         scene: &OpenedScene,
-        target: &Bound<'py, PyAny>,
-        is_image: bool,
+        target: (Bound<'py, PyAny>, bool),
+        depth: Option<Bound<'py, PyAny>>,
         wait_for: Vec<Bound<'py, PyAny>>,
         overrides: &Bound<'py, PyDict>,
     ) -> PyResult<usize> {
         let scene = scene.frame(py, &Overrides::of(overrides)?)?;
-        crate::opencl::enqueue(self, &scene, (target, is_image), &wait_for)
+        crate::opencl::enqueue(self, &scene, &target, depth.as_ref(), &wait_for)
     }
 
     /// What the devices are, a dictionary each.

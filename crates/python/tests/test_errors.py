@@ -66,6 +66,40 @@ def test_other_faults_have_classes_that_python_knows(scene, tmp_path):
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.parametrize(
+    "keywords",
+    [dict(size=3), dict(size=(3.5, 4)), dict(size=(-3, 4)), dict(size=(3, 4, 5)), dict(width="x"), dict(t="1")]
+    + [dict(tolerance="x"), dict(divisions=2.5), dict(method=3), dict(antialias=[1]), dict(exposure="Auto")],
+)
+def test_a_keyword_of_a_wrong_kind_is_named(scene, keywords):
+    (name,) = keywords
+    error = fault(scene, **keywords)
+    assert isinstance(error, ew.UnsupportedError) and error.place == name and str(error).startswith(f"{name}: ")
+    assert error.remedy.startswith(("give ", "use "))
+
+
+def test_arrays_that_do_not_fit_are_named(scene, renderer):
+    right = np.zeros((48, 64, 4), np.float32)
+    fixed = right.copy()
+    fixed.flags.writeable = False
+    wrong = [fixed, right.astype(float), right[:47], right[..., 0], np.zeros((48, 128, 4), np.float32)[:, ::2], [1, 2]]
+    for array in wrong:
+        with pytest.raises(ew.UnsupportedError, match="^array: ") as raised:
+            renderer.render_into(scene, array)
+        assert raised.value.place == "array"
+    renderer.render_into(scene, right)
+    three, four = np.zeros((3, 3)), np.ones((4, 3))
+    for place, call in [
+        ("ends", lambda: renderer.integrate(scene, three, four)),
+        ("origins", lambda: renderer.integrate(scene, "abc", four)),
+        ("normals", lambda: renderer.irradiance(scene, three, four)),
+        ("queue", lambda: ew.Renderer(queue=3)),
+    ]:
+        with pytest.raises(ew.UnsupportedError, match=f"^{place}: ") as raised:
+            call()
+        assert raised.value.place == place
+
+
 def test_exceptions_come_whole_out_of_another_process(scene):
     error = fault(scene, divisions=3)
     other = pickle.loads(pickle.dumps(error))
@@ -168,3 +202,31 @@ def test_without_opencl_the_reference_draws_and_says_so(tmp_path):
     no_vendors.pop("ENERGYWAVE_DEVICE", None)
     subprocess.run([sys.executable, "-c", WITHOUT_OPENCL], check=True, cwd=tmp_path, env=no_vendors)
     assert (tmp_path / "light.png").stat().st_size > 100
+
+
+SUITED = """
+import ctypes, warnings
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    import energywave as ew
+getenv = ctypes.CDLL(None).getenv
+getenv.restype = ctypes.c_char_p
+print(getenv(b"POCL_AFFINITY"), [str(it.message) for it in caught if it.category is RuntimeWarning])
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="PoCL's threads are pinned on Linux alone")
+def test_pocl_gets_what_it_needs_unless_the_user_has_chosen(tmp_path):
+    def suited(**variables):
+        bare = {name: value for name, value in os.environ.items() if name != "POCL_AFFINITY"}
+        command = [sys.executable, "-c", SUITED]
+        return subprocess.run(command, env=bare | variables, check=True, capture_output=True, text=True).stdout
+
+    cores = os.sched_getaffinity(0)
+    is_ours = len(cores) > 1 and cores == set(range(len(cores)))
+    assert suited() == f"{b'1' if is_ours else None} []\n"
+    assert suited(POCL_AFFINITY="0") == "b'0' []\n"
+    file = tmp_path / "file"
+    file.touch()
+    said = suited(POCL_AFFINITY="0", POCL_CACHE_DIR=str(file))
+    assert "PoCL's cache" in said and str(file) in said

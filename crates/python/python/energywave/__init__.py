@@ -26,6 +26,7 @@ from ._errors import (
     SceneWarning,
     UnsupportedError,
 )
+from ._host import HostDepth
 from ._picture import Picture, save, tone_map
 from ._render import (
     Renderer,
@@ -44,7 +45,7 @@ from ._tables import __all__ as _tables_all
 __version__ = "0.1.0"
 
 __all__ = [
-    "Animation", "Device", "DeviceError", "Devices", "Error", "HostError", "InputError", "NoDeviceWarning",
+    "Animation", "Device", "DeviceError", "Devices", "Error", "HostDepth", "HostError", "InputError", "NoDeviceWarning",
     "NoSuchDeviceError", "OpenedScene", "OutOfMemoryError", "OutputError", "Picture", "Renderer", "Scene", "SceneError",
     "SceneWarning", "Table", "UnsupportedError", "animate", "devices", "error_map", "integrate", "irradiance",
     "open_scene", "rays", "render", "save", "tone_map",

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+import warnings
 from typing import List, Optional, Tuple
 
 from . import _energywave
+
+# Drivers read the environment when they are first asked for devices.
+for _line in _energywave.suit_drivers():
+    warnings.warn(_line, RuntimeWarning, stacklevel=2)
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,14 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ._host import HostDepth
+
 _Overrides = Mapping[str, object]
 _Progress = Optional[Callable[[float], object]]
 _Record = Dict[str, Any]
 
 def schema() -> str: ...
+def suit_drivers() -> List[str]: ...
 def devices() -> Tuple[List[_Record], Optional[str], List[str]]: ...
 def tone_map(
     radiance: NDArray[np.float32], scene: Optional[OpenedScene], overrides: _Overrides
@@ -62,5 +65,10 @@ class Renderer:
         self, scene: OpenedScene, points: NDArray[np.float64], normals: NDArray[np.float64], overrides: _Overrides
     ) -> NDArray[np.float32]: ...
     def enqueue(
-        self, scene: OpenedScene, target: Any, is_image: bool, wait_for: List[Any], overrides: _Overrides
+        self,
+        scene: OpenedScene,
+        target: Tuple[Any, bool],
+        depth: Optional[HostDepth],
+        wait_for: List[Any],
+        overrides: _Overrides,
     ) -> int: ...

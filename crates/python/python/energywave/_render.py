@@ -11,6 +11,7 @@ from . import _energywave
 from ._animation import Animation
 from ._devices import Device
 from ._errors import make
+from ._host import HostDepth, is_image
 from ._scene import open_scene
 
 if TYPE_CHECKING:
@@ -121,6 +122,9 @@ class Renderer:
             found = f"{array.dtype} of {array.ndim} axes" if isinstance(array, np.ndarray) else type(array).__name__
             remedy = "give numpy.empty((height, width, 4), numpy.float32)"
             raise make("unsupported", f"array: it is {found}; {remedy}", "array", remedy)
+        if not array.flags.writeable:
+            remedy = "give one that may be written"
+            raise make("unsupported", f"array: it is read-only; {remedy}", "array", remedy)
         self._native.render_into(open_scene(scene), array, overrides, progress)
 
     def integrate(
@@ -146,7 +150,7 @@ class Renderer:
             SceneError: also for a ray that is shorter than 1e-9 or beyond 1e9.
             UnsupportedError: for arrays that are no points.
         """
-        begins, ends = np.broadcast_arrays(_points("origins", origins), _points("ends", ends))
+        begins, ends = _pairs(("origins", "ends"), origins, ends)
         shape = begins.shape
         light = self._native.integrate(
             open_scene(scene, False), begins.reshape(-1, 3), ends.reshape(-1, 3), overrides, progress
@@ -166,7 +170,7 @@ class Renderer:
             Irradiance, linear RGB, (n, 3) of float32. A matt surface of the albedo a has the radiance a / pi times
             that.
         """
-        points, normals = np.broadcast_arrays(_points("points", points), _points("normals", normals))
+        points, normals = _pairs(("points", "normals"), points, normals)
         shape = points.shape
         found = self._native.irradiance(
             open_scene(scene, False), points.reshape(-1, 3), normals.reshape(-1, 3), overrides
@@ -218,37 +222,61 @@ class Renderer:
         return Animation(self, open_scene(scene), fps, frames, progress, overrides)
 
     def enqueue(
-        self, scene: Any, target: Any, *, wait_for: Iterable[Any] = (), **overrides: "Unpack[Overrides]"
+        self,
+        scene: Any,
+        target: Any,
+        *,
+        depth: Any = None,
+        wait_for: Iterable[Any] = (),
+        **overrides: "Unpack[Overrides]",
     ) -> Any:
         """Enqueues a frame that is drawn into memory of pyopencl's, on a renderer that was made with a ``queue``.
 
-        Nothing is read back, and nothing waits but for the compiler, the first time. What comes after it on an in-order
-        queue waits for the frame.
+        Nothing is read back, and nothing waits but for the compiler, the first time, and where surfaces of a scene meet
+        depths. What comes after it on an in-order queue waits for the frame.
 
         Args:
             target: a ``pyopencl.Buffer`` of 16 * width * height bytes (float32 RGBA), or a 2D ``pyopencl.Image`` of
                 RGBA with float32 or half floats; READ_WRITE.
+            depth: depths that end the rays, in the place of the scene's own: a :class:`HostDepth`, or a buffer or an
+                image of lengths along the rays.
             wait_for: events that the frame waits for.
 
         Returns:
-            The ``pyopencl.Event`` of its end. Nothing else may use the target until then.
+            The ``pyopencl.Event`` of its end. Until then nothing else may use the target, and nothing write the depths.
 
         Raises:
-            HostError: for a target or an event that doesn't fit; nothing was enqueued.
+            HostError: for a target, depths or an event that don't fit; nothing was enqueued.
         """
         import pyopencl
 
-        is_image = isinstance(target, pyopencl.Image)
-        event = self._native.enqueue(open_scene(scene), target, is_image, list(wait_for), overrides)
+        depths = None if depth is None else HostDepth.of(depth)
+        into = (target, is_image(target))
+        event = self._native.enqueue(open_scene(scene), into, depths, list(wait_for), overrides)
         return pyopencl.Event.from_int_ptr(event, retain=False)
 
 
 def _points(name: str, array: "ArrayLike") -> "NDArray[np.float64]":
-    points = np.asarray(array, np.float64)
+    try:
+        points = np.asarray(array, np.float64)
+    except (TypeError, ValueError) as error:
+        remedy = "points are numbers, (n, 3)"
+        raise make("unsupported", f"{name}: {error}; {remedy}", name, remedy) from None
     if points.ndim == 0 or points.shape[-1] != 3:
         remedy = "points are (n, 3), or one point of 3"
         raise make("unsupported", f"{name}: an array of shape {list(points.shape)}; {remedy}", name, remedy)
     return points
+
+
+def _pairs(names: Tuple[str, str], *arrays: "ArrayLike") -> "List[NDArray[np.float64]]":
+    """Returns two arrays of points, as many in both."""
+    points = [_points(name, array) for name, array in zip(names, arrays)]
+    try:
+        return list(np.broadcast_arrays(*points))
+    except ValueError:
+        shapes = " and ".join(f"{name} of {list(it.shape)}" for name, it in zip(names, points))
+        remedy = "give as many of both, or one of either"
+        raise make("unsupported", f"{names[1]}: {shapes}; {remedy}", names[1], remedy) from None
 
 
 _local = threading.local()
