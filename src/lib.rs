@@ -48,6 +48,7 @@
 
 mod bloom;
 mod cost;
+mod crowd;
 mod error;
 mod glow;
 pub mod image;

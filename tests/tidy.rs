@@ -60,12 +60,13 @@ fn modules_named(text: &str) -> Vec<String> {
 
 /// What a module may look at: what lies below it. Errors, costs, the host's memory, the files that are written and how
 /// text is shown lie below everything.
-const LAYERS: [(&str, &[&str]); 18] = [
+const LAYERS: [(&str, &[&str]); 19] = [
     ("image", &[]),
     ("volume", &["image"]),
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
     ("glow", &["image", "opencl", "scene"]),
+    ("crowd", &["image", "opencl", "scene"]),
     // The self-tests of light and of volumes compare with the reference.
     ("mesh", &["image", "opencl", "scene", "light", "reference"]),
     ("metaball", &["image", "opencl", "scene"]),
@@ -89,6 +90,7 @@ const LAYERS: [(&str, &[&str]); 18] = [
             "opencl",
             "bloom",
             "glow",
+            "crowd",
             "light",
             "texture",
             "mesh",
@@ -241,6 +243,7 @@ fn every_file_of_cl_is_embedded_once() {
         "src/wave/kinds.rs",
         "src/bloom/sources.rs",
         "src/glow/sources.rs",
+        "src/crowd/sources.rs",
         "src/texture/sources.rs",
         "src/light/sources.rs",
         "src/mesh/sources.rs",

@@ -15,7 +15,8 @@ use serde::Serialize;
 use super::records::{Origin, Spread};
 use super::subcommands::{BenchArguments, TableName};
 use super::{
-    Outcome, bench_2006, bench_2008, bench_2013, choose_devices, names, note, print, read_scene,
+    Outcome, bench_2006, bench_2008, bench_2013, bench_crowd, choose_devices, names, note, print,
+    read_scene,
     tell_depths,
 };
 
@@ -100,6 +101,7 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
         Some(TableName::Volumes) => bench_2006::run(arguments),
         Some(TableName::Metaballs) => bench_2008::run(arguments),
         Some(TableName::Collisions) => bench_2013::run(arguments),
+        Some(TableName::Crowd) => bench_crowd::run(arguments),
         None => bench_tables(arguments, &[Table::Torus, Table::Bezier]),
     }
 }

@@ -7,6 +7,7 @@ mod bench;
 mod bench_2006;
 mod bench_2008;
 mod bench_2013;
+mod bench_crowd;
 mod compare;
 mod contacts;
 mod devices;

@@ -137,7 +137,7 @@ pub struct BenchArguments {
     /// Scene file to measure instead of the paper's tables
     pub scene: Option<PathBuf>,
     /// A paper's table: 2 (torus) or 3 (Bezier) of 2015, both without; 2010 (beam, with and without hidden surfaces);
-    /// 2008 (metaballs); 2013 (particles that hit a box); 2006 (a volume)
+    /// 2008 (metaballs); 2013 (particles that hit a box); 2006 (a volume); crowd (points of light)
     #[arg(long, value_enum, conflicts_with = "scene")]
     pub table: Option<TableName>,
     #[command(flatten)]
@@ -218,6 +218,8 @@ pub enum TableName {
     /// A beam by ray casting, and as a volume by slices, along rays and as a billboard
     #[value(name = "2006")]
     Volumes,
+    /// Points of light, up to a million
+    Crowd,
 }
 
 #[derive(Debug, Args)]

@@ -232,6 +232,9 @@ pub fn render_simpson(scene: &Scene, divisions: u32) -> Result<RadianceImage> {
 
 fn render_image(scene: &Scene, method: Method) -> Result<RadianceImage> {
     scene.validate()?;
+    if scene.has_points() {
+        return render_image(&scene.with_points_apart(), method);
+    }
     if scene.metaballs.is_empty() && scene.meshes.is_empty() {
         return render_light(scene, method);
     }

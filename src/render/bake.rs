@@ -53,6 +53,11 @@ impl Scene {
         if self.has_particles() || !self.waves.is_empty() {
             return refuse("particles are not baked: bake the scene without them");
         }
+        if self.has_points() {
+            return refuse(
+                "[[points]] are not baked: write them as [[sphere]], or bake the scene without them",
+            );
+        }
         if !self.volumes.is_empty() {
             return refuse("volumes are not baked: bake the scene without them");
         }

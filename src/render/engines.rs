@@ -4,10 +4,11 @@
 use std::ops::{ControlFlow, Range};
 
 use crate::cost::FrameCost;
+use crate::crowd::{Crowd, CrowdPlan};
 use crate::error::Result;
 use crate::glow::{Glow, GlowPlan};
 use crate::opencl::{Compute, Film, FilmFormat, RendererOptions};
-use crate::scene::{Ray, Scene};
+use crate::scene::{Profile, Ray, Scene};
 use crate::texture::{TexturePlan, Textures, Turn};
 use crate::wave::{DeviceDepths, Plan, Wave};
 
@@ -16,10 +17,13 @@ pub(super) struct Engines {
     pub wave: Wave,
     glow: Glow,
     textures: Textures,
+    /// Of each profile that there are crowds of.
+    crowds: [Crowd; 2],
     /// Which of them the last plan was for.
     has_wave: bool,
     has_glow: bool,
     has_textures: bool,
+    has_crowds: [bool; 2],
 }
 
 /// What each of them is to draw.
@@ -28,6 +32,7 @@ pub(super) struct FramePlan {
     wave: Option<Plan>,
     glow: Option<GlowPlan>,
     textures: Option<TexturePlan>,
+    crowds: [Option<CrowdPlan>; 2],
 }
 
 impl FramePlan {
@@ -43,15 +48,20 @@ impl Engines {
             wave: Wave::new(compute, options)?,
             glow: Glow::new(options),
             textures: Textures::new(options),
+            crowds: [Profile::Inverse, Profile::InverseSquare]
+                .map(|profile| Crowd::new(options, profile)),
             has_wave: true,
             has_glow: false,
             has_textures: false,
+            has_crowds: [false; 2],
         })
     }
 
     /// Returns how many kernels were built.
     pub(super) fn kernel_count(&self) -> usize {
-        self.wave.kernel_count() + self.glow.kernel_count() + self.textures.kernel_count()
+        let crowds: usize = self.crowds.iter().map(Crowd::kernel_count).sum();
+        let others = self.glow.kernel_count() + self.textures.kernel_count();
+        self.wave.kernel_count() + others + crowds
     }
 
     /// Returns what the last frame cost.
@@ -60,6 +70,8 @@ impl Engines {
             self.has_wave.then(|| self.wave.cost()),
             self.has_textures.then(|| self.textures.cost()),
             self.has_glow.then(|| self.glow.cost()),
+            self.has_crowds[0].then(|| self.crowds[0].cost()),
+            self.has_crowds[1].then(|| self.crowds[1].cost()),
         ];
         let drawn = parts.into_iter().flatten();
         drawn.reduce(FrameCost::then).unwrap_or_default()
@@ -78,8 +90,14 @@ impl Engines {
         self.has_glow = glow.is_some();
         let textures = self.textures.plan(compute, scene, depths, format)?;
         self.has_textures = textures.is_some();
+        let mut crowds = [None, None];
+        for (plan, crowd) in crowds.iter_mut().zip(&mut self.crowds) {
+            *plan = crowd.plan(compute, scene, format)?;
+        }
+        self.has_crowds = crowds.each_ref().map(Option::is_some);
         // Where nothing is drawn, somebody draws black.
-        self.has_wave = scene.source_count() > 0 || !(self.has_glow || self.has_textures);
+        let has_others = self.has_glow || self.has_textures || self.has_crowds.contains(&true);
+        self.has_wave = scene.source_count() > 0 || !has_others;
         let wave = match self.has_wave {
             true => Some(self.wave.plan_behind(compute, scene, there, format)?),
             false => None,
@@ -88,6 +106,7 @@ impl Engines {
             wave,
             glow,
             textures,
+            crowds,
         })
     }
 
@@ -99,10 +118,12 @@ impl Engines {
         rays: &[Ray],
     ) -> Result<FramePlan> {
         (self.has_wave, self.has_glow, self.has_textures) = (true, false, false);
+        self.has_crowds = [false; 2];
         Ok(FramePlan {
             wave: Some(self.wave.plan_rays(compute, scene, rays)?),
             glow: None,
             textures: None,
+            crowds: [None, None],
         })
     }
 
@@ -167,7 +188,8 @@ impl Engines {
         is_unfinished: bool,
         draw_wave: impl FnOnce(&mut Wave, &mut Film) -> Result<()>,
     ) -> Result<()> {
-        let is_followed = is_unfinished || plan.glow.is_some();
+        let mut crowds = plan.crowds.iter().flatten().count();
+        let is_followed = is_unfinished || plan.glow.is_some() || crowds > 0;
         film.leave_unfinished(is_followed || plan.textures.is_some());
         let mut drawn = draw_wave(&mut self.wave, film);
         if let (Some(textures), true) = (&plan.textures, drawn.is_ok()) {
@@ -180,11 +202,23 @@ impl Engines {
                 .draw(compute, textures, band.clone(), film, turn);
             film.add_to_what_is_there(false);
         }
-        film.leave_unfinished(is_unfinished);
+        film.leave_unfinished(is_unfinished || crowds > 0);
         if let (Some(glow), true) = (&plan.glow, drawn.is_ok()) {
             film.add_to_what_is_there(plan.wave.is_some() || plan.textures.is_some());
-            drawn = self.glow.draw(compute, glow, band, film);
+            drawn = self.glow.draw(compute, glow, band.clone(), film);
             film.add_to_what_is_there(false);
+        }
+        let mut adds = plan.wave.is_some() || plan.textures.is_some() || plan.glow.is_some();
+        for (crowd, plan) in self.crowds.iter_mut().zip(&plan.crowds) {
+            let (Some(plan), true) = (plan, drawn.is_ok()) else {
+                continue;
+            };
+            crowds -= 1;
+            film.leave_unfinished(is_unfinished || crowds > 0);
+            film.add_to_what_is_there(adds);
+            drawn = crowd.draw(compute, plan, band.clone(), film);
+            film.add_to_what_is_there(false);
+            adds = true;
         }
         film.leave_unfinished(false);
         drawn
@@ -197,6 +231,11 @@ impl Engines {
         }
         if plan.textures.is_some() {
             self.textures.settle(compute)?;
+        }
+        for (crowd, plan) in self.crowds.iter_mut().zip(&plan.crowds) {
+            if plan.is_some() {
+                crowd.settle(compute)?;
+            }
         }
         match plan.glow {
             Some(_) => self.glow.settle(compute),

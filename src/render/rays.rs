@@ -50,6 +50,9 @@ impl Renderer {
                 return Err(SceneError::value(format!("ray {index}"), fault).into());
             }
         }
+        if scene.has_points() {
+            return self.integrate(&scene.with_points_apart(), rays);
+        }
         if !scene.has_particles() && scene.volumes.is_empty() {
             return self.integrate_sources(scene, rays, progress);
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::Renderer;
+use super::{Renderer, RendererBackend};
 use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::particle::{Simulation, Solid};
@@ -63,7 +63,7 @@ impl Scene {
 
     /// Returns whether a frame is put together on the host.
     pub(super) fn has_stage(&self) -> bool {
-        !self.waves.is_empty() || self.has_surfaces()
+        !self.waves.is_empty() || self.has_surfaces() || self.has_points()
     }
 }
 
@@ -73,7 +73,13 @@ impl Renderer {
     pub(super) fn simulated(&mut self, scene: &Scene) -> Result<Option<Scene>> {
         let simulated = self.simulated_waves(scene)?;
         let given = simulated.as_ref().unwrap_or(scene);
-        Ok(with_meshes(given).or(simulated))
+        let simulated = with_meshes(given).or(simulated);
+        if !scene.has_points() {
+            return Ok(simulated);
+        }
+        let given = simulated.as_ref().unwrap_or(scene);
+        let has_crowds = !matches!(self.backend, RendererBackend::Reference { .. });
+        Ok(given.with_crowds(has_crowds).or(simulated))
     }
 
     /// Returns a scene with the light of its waves at its moment in their place; `None`: it has none.

@@ -43,6 +43,14 @@ impl<'de> Visitor<'de> for ColorVisitor {
     }
 }
 
+/// Returns the linear value of an sRGB one (IEC 61966-2-1).
+pub(super) fn decoded(encoded: f64) -> f64 {
+    match encoded <= 0.04045 {
+        true => encoded / 12.92,
+        false => ((encoded + 0.055) / 1.055).powf(2.4),
+    }
+}
+
 /// Returns the linear RGB of an sRGB colour `#rrggbb`.
 pub(super) fn from_hex(text: &str) -> Option<DVec3> {
     let digits = text.strip_prefix('#')?;
@@ -51,12 +59,7 @@ pub(super) fn from_hex(text: &str) -> Option<DVec3> {
     }
     let channel = |k: usize| {
         let byte = u8::from_str_radix(digits.get(2 * k..2 * k + 2)?, 16).ok()?;
-        // IEC 61966-2-1.
-        let encoded = f64::from(byte) / 255.0;
-        Some(match encoded <= 0.04045 {
-            true => encoded / 12.92,
-            false => ((encoded + 0.055) / 1.055).powf(2.4),
-        })
+        Some(decoded(f64::from(byte) / 255.0))
     };
     Some(DVec3::new(channel(0)?, channel(1)?, channel(2)?))
 }

@@ -39,6 +39,7 @@ impl Scene {
             || !self.metaballs.is_empty()
             || !self.meshes.is_empty()
             || self.has_particles()
+            || self.has_points()
             || !self.volumes.is_empty();
         self.for_each_shared(&mut |source| {
             has_peak |= source.has_peak();

@@ -130,6 +130,13 @@ macro_rules! define_extent {
                     let (place, reach) = (particles.translate, particles.greatest_radius());
                     extent.ended.join(low + place - reach, high + place + reach);
                 }
+                for points in self.points.iter().filter(|it| !it.points.is_empty()) {
+                    let (low, high) = points.points.bounds();
+                    match points.reach {
+                        None => extent.endless.join(low, high),
+                        Some(reach) => extent.ended.join(low - reach, high + reach),
+                    }
+                }
                 for volume in self.volumes.iter() {
                     let (place, reach) = (volume.center, volume.radius());
                     extent.ended.join(place - reach, place + reach);

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::lit_points::Crowd;
 use super::values::{Checked, Fault, finite, positive};
 
 /// On every device the squared distance to a core is never taken below `(CORE_FLOOR |E - S|)^2`, so that every pixel is
@@ -127,6 +128,8 @@ pub struct Integration {
     pub hidden_surfaces: bool,
     /// How the light of volumes is summed.
     pub volumes: VolumeMethod,
+    /// How the light of many points is summed.
+    pub crowd: Crowd,
 }
 
 impl Default for Integration {
@@ -140,6 +143,7 @@ impl Default for Integration {
             softening: 0.0,
             hidden_surfaces: true,
             volumes: VolumeMethod::default(),
+            crowd: Crowd::default(),
         }
     }
 }

@@ -64,6 +64,7 @@ macro_rules! define_light_groups {
                     None => {
                         scene.volumes = self.volumes.clone();
                         scene.particles = self.particles.clone();
+                        scene.points = self.points.clone();
                         scene.light_elements = self.light_elements.clone();
                         (scene.waves, scene.simulation) = (self.waves.clone(), self.simulation);
                     }
@@ -94,7 +95,7 @@ impl Scene {
     #[must_use]
     pub fn has_ungrouped_light(&self) -> bool {
         let mut has = !self.metaballs.is_empty() || !self.meshes.is_empty() || self.has_particles();
-        has |= !self.volumes.is_empty();
+        has |= !self.volumes.is_empty() || self.has_points();
         has |= self.colliders.iter().any(|collider| collider.visible);
         self.for_each_light_group(&mut |group| has |= group.is_none());
         has

@@ -19,6 +19,7 @@ macro_rules! keys {
 mod camera;
 pub(crate) mod chain;
 mod colors;
+mod crowd_sight;
 mod depth_layers;
 #[cfg(feature = "files")]
 mod depth_report;
@@ -37,6 +38,7 @@ mod light_element;
 mod light_group;
 mod lighting;
 mod list;
+mod lit_points;
 mod mesh;
 mod metaballs;
 mod one_color;
@@ -62,6 +64,7 @@ use glam::DVec3;
 pub use camera::{Camera, CameraMatrices, ClipY};
 pub(crate) use chain::Piece;
 pub use chain::{Dashes, ElectricArc};
+pub(crate) use crowd_sight::CrowdSight;
 pub(crate) use depth_layers::DepthLayers;
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;
@@ -76,6 +79,7 @@ pub use integration::{
 pub use light_element::LightElement;
 pub use lighting::{Lighting, Sun};
 pub use list::List;
+pub use lit_points::{Crowd, Points};
 pub(crate) use mesh::{Halves, Triangle};
 pub use mesh::{Mesh, TriangleList};
 pub(crate) use metaballs::{AMBIENT, LAMP};
@@ -136,6 +140,8 @@ macro_rules! define_scene {
             pub metaballs: List<Metaballs>,
             /// Particles that shine.
             pub particles: List<Particles>,
+            /// Points of light in any number.
+            pub points: List<Points>,
             /// Light that cells give off.
             pub volumes: List<Volume>,
             /// Balls and streaks of light, given one by one; files have none. They do not lengthen the rays.
@@ -162,6 +168,7 @@ macro_rules! define_scene {
                     meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
+                    points: List::new(),
                     volumes: List::new(),
                     light_elements: List::new(),
                     $($list: List::new(),)*

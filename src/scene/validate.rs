@@ -78,6 +78,7 @@ impl Scene {
         self.check_reduction()?;
         self.check_simulation()?;
         self.check_particles()?;
+        self.check_points()?;
         self.check_volumes()?;
         let brightness = self.brightness();
         let of_line = brightness.most / brightness.least_distance;

@@ -138,6 +138,10 @@ impl Scene {
             let message = "it has no particle: `points`, `file` or `lattice` says where they are";
             return Some(SceneError::value(format!("particles[{index}]"), message));
         }
+        if let Some(index) = self.points.iter().position(|it| it.points.is_empty()) {
+            let message = "it has no point: `positions` or `file` says where they are";
+            return Some(SceneError::value(format!("points[{index}]"), message));
+        }
         let index = self
             .metaballs
             .iter()
@@ -173,6 +177,7 @@ impl Scene {
             return None; // what is told of those is another matter
         }
         if self.has_particles()
+            || self.has_points()
             || !self.volumes.is_empty()
             || !self.meshes.is_empty()
             || self.colliders.iter().any(|it| it.visible)

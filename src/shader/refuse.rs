@@ -14,6 +14,7 @@ pub(super) fn refuse(scene: &Scene) -> Result<()> {
             "particles",
             scene.particles.len() + scene.light_elements.len(),
         ),
+        ("points", scene.points.len()),
         ("volume", scene.volumes.len()),
     ];
     if let Some((name, _)) = lists.iter().find(|(_, count)| *count > 0) {

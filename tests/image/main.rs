@@ -17,6 +17,7 @@ mod cast_shadows; // holds what meshes leave of it to the reference
 mod clip_depths; // holds depths of clip space to the surfaces that a rasteriser met
 mod convolution;
 mod convolved_paths; // holds light that adds up over a core to its definition
+mod crowds; // holds crowds of points to the sum over all of them
 mod defaults; // looks at a scene that names nothing
 mod depth; // compares occluded images with those of rays that are cut by hand
 mod depth_edges; // compares edges of what hides the light with the means of many rays
@@ -39,6 +40,7 @@ mod particles; // holds balls and streaks of light to float64
 mod parts; // draws rows, rays and changed scenes as the whole image has them
 mod path_core; // what a path is by definition
 mod paths; // holds paths to their definition
+mod points; // points of light: as many spheres, from every kind of file
 mod presets; // draws every preset, and looks at its whites and blacks
 mod rays; // compares single rays with integrals that are known to nine digits
 mod rms; // holds roots of integrals of squares to their definition

@@ -13,6 +13,7 @@ mod bad_looks; // has every fault of layers named with its place
 #[cfg(unix)] // as cli
 mod bad_metaballs; // has every fault of surfaces and particles named
 mod bad_particles; // refuses bad particles, with their place
+mod bad_points; // refuses bad points of light, with their place
 mod bad_scenes;
 mod bad_series; // has every fault of a scene file named with its place
 mod bad_simulations; // has every fault of waves of particles named with its place

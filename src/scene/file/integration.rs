@@ -6,7 +6,9 @@ use crate::scene::integration::{
     check_divisions, check_slices, check_step, check_strata, check_tolerance,
 };
 use crate::scene::values::{Checked, Fault};
-use crate::scene::{Antialias, Integration, Measure, Method, Reduction, Sampling, VolumeMethod};
+use crate::scene::{
+    Antialias, Crowd, Integration, Measure, Method, Reduction, Sampling, VolumeMethod,
+};
 
 /// `[integration]`: keys of all methods may stand there, whichever is chosen.
 #[derive(Debug, Clone, Deserialize, Serialize)]
@@ -36,6 +38,13 @@ pub(super) struct IntegrationTable {
     slices: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     volume_step: Option<f64>,
+    #[serde(skip_serializing_if = "is_auto")]
+    crowd: Crowd,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
+fn is_auto(crowd: &Crowd) -> bool {
+    *crowd == Crowd::Auto
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref)] // serde gives a reference
@@ -71,6 +80,8 @@ keys! { pub(in crate::scene) INTEGRATION_KEYS;
         "volumes: along rays, or on planes before the eye as in 2006";
     slices: Whole(1, 65536), NONE, Value("256"), "volumes by slices: how many planes";
     volume_step: from_to(0.01, 100.0), "cells", Value("1"), "volumes by rays: the length of a piece at most";
+    crowd: Word(&["auto", "never"]), NONE, Value("\"auto\""),
+        "many points: their light together, or of each by itself";
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
@@ -122,6 +133,7 @@ impl Default for IntegrationTable {
             volume_method: VolumeMethodName::Ray,
             slices: None,
             volume_step: None,
+            crowd: Crowd::Auto,
         }
     }
 }
@@ -180,6 +192,7 @@ impl IntegrationTable {
                     count: self.slices.unwrap_or(256),
                 },
             },
+            crowd: self.crowd,
         }
     }
 
@@ -195,6 +208,7 @@ impl IntegrationTable {
             slices,
             volume_step,
             absolute_tolerance: integration.absolute_tolerance,
+            crowd: integration.crowd,
             measure: integration.measure,
             reduction: integration.reduction,
             antialias: integration.antialias,

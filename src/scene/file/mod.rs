@@ -9,6 +9,7 @@ mod groups;
 mod integration;
 #[cfg_attr(not(feature = "json"), path = "no_json.rs")]
 mod json;
+mod lit_points;
 mod locate;
 mod mesh;
 mod metaballs;
@@ -51,6 +52,8 @@ use groups::{GroupTable, Groups};
 pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
 pub use integration::MethodKeys;
+pub(super) use lit_points::POINTS_KEYS;
+use lit_points::PointsTable;
 pub(super) use mesh::MESH_KEYS;
 use mesh::MeshTable;
 pub(super) use metaballs::METABALLS_KEYS;
@@ -108,6 +111,8 @@ macro_rules! define_scene_file {
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             particles: Vec<ParticlesTable>,
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            points: Vec<PointsTable>,
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
             volume: Vec<VolumeTable>,
             $(#[serde(default, skip_serializing_if = "is_empty")] $kind: List<$Type>,)*
             #[serde(default, skip_serializing)]
@@ -141,6 +146,7 @@ macro_rules! define_scene_file {
                     meshes: List::new(),
                     metaballs: List::new(),
                     particles: List::new(),
+                    points: List::new(),
                     volumes: List::new(),
                     light_elements: List::new(),
                     $($list: std::mem::take(&mut self.$kind),)*
@@ -194,7 +200,7 @@ macro_rules! define_scene_file {
                 depth: Option<DepthTable>,
                 display: DisplayTable,
                 metaballs: Vec<MetaballsTable>,
-                particles: Vec<ParticlesTable>,
+                (particles, points): (Vec<ParticlesTable>, Vec<PointsTable>),
                 volume: Vec<VolumeTable>,
             ) -> Self {
                 Self {
@@ -213,6 +219,7 @@ macro_rules! define_scene_file {
                     mesh: scene.meshes.iter().map(MeshTable::of).collect(),
                     metaballs,
                     particles,
+                    points,
                     volume,
                     $($kind: scene.$list.clone(),)*
                     group: Vec::new(),
@@ -264,6 +271,7 @@ impl SceneFile {
         self.mesh = shared(other.mesh, &self.mesh, MeshTable::share);
         self.metaballs = shared(other.metaballs, &self.metaballs, MetaballsTable::share);
         self.particles = shared(other.particles, &self.particles, ParticlesTable::share);
+        self.points = shared(other.points, &self.points, PointsTable::share);
         self.volume = shared(other.volume, &self.volume, VolumeTable::share);
     }
 
@@ -272,7 +280,7 @@ impl SceneFile {
         if !self.mesh.is_empty() || !self.metaballs.is_empty() || !self.particles.is_empty() {
             return None;
         }
-        if !self.volume.is_empty() {
+        if !self.volume.is_empty() || !self.points.is_empty() {
             return None;
         }
         let mut scene = self.scene();
@@ -304,12 +312,7 @@ impl SceneFile {
         for (index, table) in self.metaballs.iter().enumerate() {
             scene.metaballs.push(table.open(index, folder)?);
         }
-        for (index, table) in self.particles.iter().enumerate() {
-            scene.particles.push(table.open(index, folder)?);
-        }
-        for (index, table) in self.volume.iter().enumerate() {
-            scene.volumes.push(table.open(index, folder)?);
-        }
+        self.open_lights(folder, &mut scene)?;
         self.display.fit_exposure(&mut scene);
         adjust(&mut scene, &self.integration.keys())?;
         if let (Some(depth), None) = (&self.depth, &scene.depth) {

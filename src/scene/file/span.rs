@@ -48,8 +48,9 @@ impl AnimatedScene {
         let depth = file.depth.as_ref().map(DepthTable::file);
         let surfaces = file.metaballs.iter().filter_map(MetaballsTable::file);
         let lights = file.particles.iter().filter_map(ParticlesTable::file);
+        let lit = file.points.iter().filter_map(PointsTable::file);
         let images = depth.into_iter().chain(file.display.background_file());
-        let named = images.chain(surfaces).chain(lights);
+        let named = images.chain(surfaces).chain(lights).chain(lit);
         let named = named.map(|file| motion.folder.join(file));
         let meshes = file.mesh.iter();
         let meshes = meshes.flat_map(|mesh| mesh.files(&motion.folder));

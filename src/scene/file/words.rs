@@ -30,12 +30,13 @@ const SINGLE: [&str; 10] = [
 ];
 
 /// Tables of which a scene has some, besides sources and groups, and lists within tables.
-const SEVERAL: [&str; 6] = [
+const SEVERAL: [&str; 7] = [
     "wave",
     "collider",
     "mesh",
     "metaballs",
     "particles",
+    "points",
     "volume",
 ];
 const LISTS: [&str; 3] = ["layers", "control", "mixture"];

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use serde::{Serialize, Serializer};
 
-use super::{DepthTable, DisplayTable, MetaballsTable, ParticlesTable, SceneFile, VolumeTable};
+use super::{
+    DepthTable, DisplayTable, MetaballsTable, ParticlesTable, PointsTable, SceneFile, VolumeTable,
+};
 use crate::error::{Error, Result};
 use crate::output::Output;
 use crate::scene::Scene;
@@ -38,12 +40,15 @@ impl Serialize for Scene {
         let particles = self.particles.iter().map(ParticlesTable::of);
         let particles: Option<Vec<_>> = particles.collect();
         let particles = particles.ok_or_else(|| serde::ser::Error::custom(NO_POINTS))?;
+        let points: Option<Vec<_>> = self.points.iter().map(PointsTable::of).collect();
+        let points = points.ok_or_else(|| serde::ser::Error::custom(NO_POINTS))?;
+        let light = (particles, points);
         let volumes: Option<Vec<_>> = self.volumes.iter().map(VolumeTable::of).collect();
         let volumes = volumes.ok_or_else(|| serde::ser::Error::custom(NO_CELLS))?;
         if !self.light_elements.is_empty() {
             return Err(serde::ser::Error::custom(NO_ELEMENTS));
         }
-        SceneFile::of(self, depth, display, metaballs, particles, volumes).serialize(writer)
+        SceneFile::of(self, depth, display, metaballs, light, volumes).serialize(writer)
     }
 }
 

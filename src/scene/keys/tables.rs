@@ -7,7 +7,7 @@ use crate::scene::chain::{ARC_KEYS, DASHES_KEYS};
 use crate::scene::file::{
     BLOOM_KEYS, BOX_KEYS, COLLIDER_KEYS, DEPTH_KEYS, DISPLAY_KEYS, GROUP_KEYS, INTEGRATION_KEYS,
     LATTICE_KEYS, LIGHT_BALL_KEYS, MESH_KEYS, METABALLS_KEYS, PARTICLES_KEYS, PLANE_KEYS,
-    SPHERE_KEYS, TIME_KEYS, VOLUME_KEYS,
+    POINTS_KEYS, SPHERE_KEYS, TIME_KEYS, VOLUME_KEYS,
 };
 use crate::scene::group::{REPEAT_KEYS, ROTATION_KEYS};
 use crate::scene::integration::{ABSORPTION_KEYS, DECAY_KEYS};
@@ -232,6 +232,12 @@ pub fn tables() -> Vec<Table> {
         Many,
         "Particles that shine, each as far as its radius",
         PARTICLES_KEYS,
+    ));
+    tables.push(Table::new(
+        "points",
+        Many,
+        "Points of light in any number, as many spheres",
+        POINTS_KEYS,
     ));
     tables.push(Table::new(
         "volume",

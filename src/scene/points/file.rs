@@ -39,7 +39,7 @@ pub(super) fn open(path: &Path) -> std::result::Result<PointList, SceneError> {
     let bytes = fs::read(path).map_err(|error| fault(format!(": cannot read: {error}")))?;
     let (positions, sizes) = read(&bytes).map_err(fault)?;
     let full = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    PointList::checked(positions, sizes, Origin::File(full))
+    PointList::checked(positions, (sizes, None), Origin::File(full))
         .map_err(|wrong| fault(format!(": {}", wrong.message)))
 }
 

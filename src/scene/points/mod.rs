@@ -5,6 +5,8 @@
 mod file;
 mod lattice;
 #[cfg(feature = "files")]
+mod lit;
+#[cfg(feature = "files")]
 mod npy;
 #[cfg(feature = "files")]
 mod ply;
@@ -43,6 +45,9 @@ pub struct PointList(Arc<Points>);
 struct Points {
     positions: Vec<DVec3>,
     sizes: Option<Vec<PointSize>>,
+    lights: Option<Vec<[f32; 3]>>,
+    /// Least light, the sum of all, and the greatest: of each the brightest channel.
+    light: [f64; 3],
     low: DVec3,
     high: DVec3,
     revision: u64,
@@ -78,7 +83,7 @@ impl PointList {
     /// [`Error::Scene`](crate::Error::Scene) if a coordinate is not a finite number or beyond 1e9, or there are more
     /// than 2^27.
     pub fn new(positions: Vec<DVec3>) -> Result<Self> {
-        Ok(Self::checked(positions, None, Origin::Given)?)
+        Ok(Self::checked(positions, (None, None), Origin::Given)?)
     }
 
     /// Makes a list of positions, each with a radius and a weight of its own.
@@ -86,7 +91,23 @@ impl PointList {
     /// # Errors
     /// As [`PointList::new`], and if there is not one of each for every position, or one is not positive.
     pub fn with_sizes(positions: Vec<DVec3>, sizes: Vec<PointSize>) -> Result<Self> {
-        Ok(Self::checked(positions, Some(sizes), Origin::Given)?)
+        Ok(Self::checked(
+            positions,
+            (Some(sizes), None),
+            Origin::Given,
+        )?)
+    }
+
+    /// Makes a list of positions, each with a light of its own: linear RGB times what its field is multiplied with.
+    ///
+    /// # Errors
+    /// As [`PointList::new`], and if there is not one light for every position, or one is not finite or beyond 1e9.
+    pub fn with_lights(positions: Vec<DVec3>, lights: Vec<[f32; 3]>) -> Result<Self> {
+        Ok(Self::checked(
+            positions,
+            (None, Some(lights)),
+            Origin::Given,
+        )?)
     }
 
     /// Makes the points of a lattice.
@@ -96,7 +117,7 @@ impl PointList {
     pub fn lattice(lattice: &Lattice) -> Result<Self> {
         lattice.check().map_err(|fault| fault.of("lattice"))?;
         let origin = Origin::Lattice(lattice.clone());
-        Ok(Self::checked(lattice.positions(), None, origin)?)
+        Ok(Self::checked(lattice.positions(), (None, None), origin)?)
     }
 
     /// Reads a file; its ending chooses. `.csv`: a line for each particle, x, y, z, and if wanted radius and weight,
@@ -111,9 +132,23 @@ impl PointList {
         Ok(file::open(path.as_ref())?)
     }
 
+    /// Reads a file of points of light; its ending chooses. Each has x, y and z, and where the file has them r, g and
+    /// b, a coefficient and a radius. `.csv`: the first line may name the columns `x`, `y`, `z`, `r`, `g`, `b`,
+    /// `coefficient`, `radius`, in any order; without names, and in `.npy` (NumPy, float32 or float64, shape (n, 3) to
+    /// (n, 8)), they stand in this order: 4 columns have a coefficient, 5 also a radius, 6 r, g and b, 7 also a
+    /// coefficient, 8 also a radius. `.ply`: the properties of its vertices; `red`, `green` and `blue` of one byte are
+    /// sRGB, others linear.
+    ///
+    /// # Errors
+    /// [`Error::Scene`](crate::Error::Scene) if the file cannot be read, or does not hold that.
+    #[cfg(feature = "files")]
+    pub fn lit_from_file(path: impl AsRef<Path>) -> Result<Self> {
+        Ok(lit::open(path.as_ref())?)
+    }
+
     fn checked(
         positions: Vec<DVec3>,
-        sizes: Option<Vec<PointSize>>,
+        (sizes, lights): (Option<Vec<PointSize>>, Option<Vec<[f32; 3]>>),
         origin: Origin,
     ) -> std::result::Result<Self, SceneError> {
         let fault = |message: String| SceneError::value("points", message);
@@ -137,10 +172,16 @@ impl PointList {
         if let Some(sizes) = &sizes {
             check_sizes(positions.len(), sizes).map_err(fault)?;
         }
+        if let Some(lights) = &lights {
+            check_lights(positions.len(), lights).map_err(fault)?;
+        }
+        let positions_len = positions.len();
         Ok(Self(Arc::new(Points {
             revision: new_revision(),
             positions,
             sizes,
+            light: light_of(positions_len, lights.as_deref()),
+            lights,
             low,
             high,
             origin,
@@ -157,6 +198,23 @@ impl PointList {
     #[must_use]
     pub fn sizes(&self) -> Option<&[PointSize]> {
         self.0.sizes.as_deref()
+    }
+
+    /// Returns the lights, linear RGB times coefficient, if the points have some of their own.
+    #[must_use]
+    pub fn lights(&self) -> Option<&[[f32; 3]]> {
+        self.0.lights.as_deref()
+    }
+
+    /// Returns the least light of any channel of a point; 1 where they have none of their own.
+    pub(crate) fn least_light(&self) -> f64 {
+        self.0.light[0]
+    }
+
+    /// Returns the light of all points, and of the brightest: of each the brightest channel; 1 for each where they have
+    /// none of their own.
+    pub(crate) fn total_light(&self) -> (f64, f64) {
+        (self.0.light[1], self.0.light[2])
     }
 
     /// Returns the number of particles.
@@ -225,6 +283,38 @@ fn check_sizes(count: usize, sizes: &[PointSize]) -> std::result::Result<(), Str
     Ok(())
 }
 
+fn light_of(count: usize, lights: Option<&[[f32; 3]]>) -> [f64; 3] {
+    let Some(lights) = lights else {
+        return [1.0, count as f64, 1.0];
+    };
+    let mut found = [0.0_f64, 0.0, 0.0];
+    for light in lights {
+        let [red, green, blue] = light.map(f64::from);
+        let most = red.max(green).max(blue);
+        found[0] = found[0].min(red.min(green).min(blue));
+        found[1] += most.max(0.0);
+        found[2] = found[2].max(most);
+    }
+    found
+}
+
+fn check_lights(count: usize, lights: &[[f32; 3]]) -> std::result::Result<(), String> {
+    if lights.len() != count {
+        let found = lights.len();
+        return Err(format!(
+            "{count} positions and {found} lights; each point has one"
+        ));
+    }
+    let is_wrong = |light: &[f32; 3]| !light.iter().all(|it| it.abs() <= LARGEST as f32);
+    match lights.iter().position(is_wrong) {
+        Some(index) => Err(format!(
+            "the light of point {index} is {:?}; it is finite, up to {LARGEST:e}",
+            lights[index]
+        )),
+        None => Ok(()),
+    }
+}
+
 /// Says how many there are; a million would fill a screen for hours.
 impl fmt::Debug for PointList {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -237,6 +327,8 @@ impl Default for PointList {
         Self(Arc::new(Points {
             positions: Vec::new(),
             sizes: None,
+            lights: None,
+            light: [0.0; 3],
             low: DVec3::ZERO,
             high: DVec3::ZERO,
             revision: 0,
@@ -250,7 +342,8 @@ impl PartialEq for PointList {
     fn eq(&self, other: &Self) -> bool {
         let (own, others) = (&self.0, &other.0);
         let is_same = Arc::ptr_eq(own, others) || own.revision == others.revision;
-        is_same || (own.positions == others.positions && own.sizes == others.sizes)
+        let is_light_same = own.lights == others.lights;
+        is_same || (own.positions == others.positions && own.sizes == others.sizes && is_light_same)
     }
 }
 

@@ -1,16 +1,28 @@
 //! Reads NumPy's `.npy`: a magic word, the version, the length of a header, the header as a Python dictionary, then the
 //! numbers (NEP 1, "A simple file format for NumPy arrays"). Arrays of shape (n, 3), float32 or float64, are positions.
 
+use std::ops::RangeInclusive;
+
 use super::file::{Read, vectors};
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
 pub(super) fn read(bytes: &[u8]) -> Read {
+    let (numbers, _) = numbers(bytes, 3..=3, "(n, 3)")?;
+    Ok((vectors(numbers), None))
+}
+
+/// Reads an array of two dimensions, by rows; gives the numbers, and how many columns there are.
+pub(super) fn numbers(
+    bytes: &[u8],
+    columns: RangeInclusive<usize>,
+    shapes: &str,
+) -> Result<(Vec<f64>, usize), String> {
     let (header, numbers) = parts(bytes).ok_or_else(|| {
         ": it does not begin as a .npy of NumPy does; numpy.save writes such files".to_owned()
     })?;
     let wrong = |what: String| {
-        format!(": {what}; particles are an array of shape (n, 3), float32 or float64, by rows")
+        format!(": {what}; particles are an array of shape {shapes}, float32 or float64, by rows")
     };
     if value(header, "fortran_order") != Some("False") {
         return Err(wrong("the array is not by rows (fortran_order)".to_owned()));
@@ -18,7 +30,12 @@ pub(super) fn read(bytes: &[u8]) -> Read {
     let shape = value(header, "shape").unwrap_or_default();
     let sizes = shape.trim_matches(['(', ')']).split(',').map(str::trim);
     let sizes: Vec<&str> = sizes.filter(|it| !it.is_empty()).collect();
-    let [count, "3"] = sizes.as_slice() else {
+    let is_shape = |it: &str| it.parse().ok().filter(|it| columns.contains(it));
+    let (count, across) = match sizes.as_slice() {
+        [count, across] => (*count, is_shape(across)),
+        _ => ("", None),
+    };
+    let Some(across) = across else {
         return Err(wrong(format!(
             "its shape is {}",
             crate::shown::shown(shape)
@@ -35,30 +52,26 @@ pub(super) fn read(bytes: &[u8]) -> Read {
     let needed = count
         .parse::<usize>()
         .ok()
-        .and_then(|count| count.checked_mul(3 * size));
+        .and_then(|count| count.checked_mul(across * size));
     if needed != Some(numbers.len()) {
         return Err(wrong(format!(
             "{} bytes of numbers are not of shape {shape}",
             numbers.len()
         )));
     }
-    let positions = match size {
-        4 => vectors(
-            numbers
-                .as_chunks()
-                .0
-                .iter()
-                .map(|it| f64::from(f32::from_le_bytes(*it))),
-        ),
-        _ => vectors(
-            numbers
-                .as_chunks()
-                .0
-                .iter()
-                .map(|it| f64::from_le_bytes(*it)),
-        ),
+    let values = match size {
+        4 => {
+            let (numbers, _) = numbers.as_chunks();
+            let value = |it: &[u8; 4]| f64::from(f32::from_le_bytes(*it));
+            numbers.iter().map(value).collect()
+        }
+        _ => {
+            let (numbers, _) = numbers.as_chunks();
+            let value = |it: &[u8; 8]| f64::from_le_bytes(*it);
+            numbers.iter().map(value).collect()
+        }
     };
-    Ok((positions, None))
+    Ok((values, across))
 }
 
 /// Takes a file apart: its header, and the bytes of the numbers.

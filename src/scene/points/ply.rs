@@ -3,12 +3,27 @@
 
 use glam::DVec3;
 
-use super::PointSize;
 use super::file::Read;
+use super::{MOST_POINTS, PointSize};
+use crate::scene::colors::decoded;
 use crate::shown::shown;
 
 /// What is read of a vertex; the first three it must have.
-const NAMES: [&str; 5] = ["x", "y", "z", "radius", "weight"];
+const NAMES: [&str; COUNT] = [
+    "x",
+    "y",
+    "z",
+    "radius",
+    "weight",
+    "red",
+    "green",
+    "blue",
+    "coefficient",
+];
+const COUNT: usize = 9;
+
+/// Without them.
+const ABSENT: [f64; COUNT] = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0];
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Format {
@@ -39,7 +54,7 @@ pub(super) fn read(bytes: &[u8]) -> Read {
         return Err(": its vertices have no x, y and z".to_owned());
     }
     let (mut positions, mut sizes) = (Vec::new(), Vec::new());
-    let mut add = |values: &[f64; 5]| {
+    let mut add = |values: &[f64; COUNT]| {
         positions.push(DVec3::new(values[0], values[1], values[2]));
         sizes.push(PointSize {
             radius: values[3],
@@ -58,11 +73,49 @@ pub(super) fn read(bytes: &[u8]) -> Read {
     Ok((positions, has(3).then_some(sizes)))
 }
 
-fn read_text(header: &Header, body: &[u8], add: &mut dyn FnMut(&[f64; 5])) -> Result<(), String> {
+/// Reads points of light: position, red, green, blue, coefficient and radius of each, and which the file has.
+pub(super) fn read_lit(bytes: &[u8]) -> Result<(Vec<[f64; 8]>, [bool; 8]), String> {
+    const ORDER: [usize; 8] = [0, 1, 2, 5, 6, 7, 8, 3];
+    let (header, body) = parts(bytes)?;
+    let has = |name: usize| header.properties.iter().any(|(it, _)| *it == Some(name));
+    if !(0..3).all(has) {
+        return Err(": its vertices have no x, y and z".to_owned());
+    }
+    if header.count > MOST_POINTS {
+        return Err(format!(
+            ": {} vertices; there may be {MOST_POINTS}",
+            header.count
+        ));
+    }
+    let is_byte =
+        |name: usize, (it, number): &(Option<usize>, Number)| *it == Some(name) && number.size == 1;
+    let are_bytes = [5, 6, 7].map(|name| header.properties.iter().any(|it| is_byte(name, it)));
+    let mut rows = Vec::new();
+    let mut add = |values: &[f64; COUNT]| {
+        let mut row = ORDER.map(|name| values[name]);
+        for (value, is_byte) in row[3..6].iter_mut().zip(are_bytes) {
+            if is_byte {
+                *value = decoded(*value / 255.0);
+            }
+        }
+        rows.push(row);
+    };
+    match header.format {
+        Format::Text => read_text(&header, body, &mut add)?,
+        _ => read_binary(&header, body, &mut add)?,
+    }
+    Ok((rows, ORDER.map(has)))
+}
+
+fn read_text(
+    header: &Header,
+    body: &[u8],
+    add: &mut dyn FnMut(&[f64; COUNT]),
+) -> Result<(), String> {
     let text = std::str::from_utf8(body).map_err(|_| ": it is no text (UTF-8)".to_owned())?;
     let mut words = text.split_whitespace();
     for vertex in 0..header.count {
-        let mut values = [0.0, 0.0, 0.0, 0.0, 1.0];
+        let mut values = ABSENT;
         for (name, _) in &header.properties {
             let word = words.next().ok_or_else(|| cut_off(vertex, header))?;
             let value = word
@@ -77,7 +130,11 @@ fn read_text(header: &Header, body: &[u8], add: &mut dyn FnMut(&[f64; 5])) -> Re
     Ok(())
 }
 
-fn read_binary(header: &Header, body: &[u8], add: &mut dyn FnMut(&[f64; 5])) -> Result<(), String> {
+fn read_binary(
+    header: &Header,
+    body: &[u8],
+    add: &mut dyn FnMut(&[f64; COUNT]),
+) -> Result<(), String> {
     let record: usize = header
         .properties
         .iter()
@@ -88,7 +145,7 @@ fn read_binary(header: &Header, body: &[u8], add: &mut dyn FnMut(&[f64; 5])) -> 
         let bytes = body
             .get(at..at + record)
             .ok_or_else(|| cut_off(vertex, header))?;
-        let mut values = [0.0, 0.0, 0.0, 0.0, 1.0];
+        let mut values = ABSENT;
         let mut at = 0;
         for (name, number) in &header.properties {
             if let Some(name) = name {

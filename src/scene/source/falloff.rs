@@ -213,7 +213,7 @@ impl Falloff {
     }
 
     /// Checks its numbers, and whether they go together.
-    pub(super) fn check(&self) -> Checked {
+    pub(in crate::scene) fn check(&self) -> Checked {
         self.check_sizes()?;
         if self.radius == 0.0 && self.profile.needs_radius() {
             let message = "this profile has a radius as its width: give one, such as 0.1";

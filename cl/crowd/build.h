@@ -1,0 +1,169 @@
+// What sources are together: of each its peak and level, of each cell the sums of those, and light at nodes in the cell
+// that stands for its sources, as seen from any tile that does not touch the cell.
+#pragma once
+#include "nodes.h"
+#include "point.h"
+
+// Finds peak and level of LANES sources, from the light 3 and 48 pixels beside each.
+__kernel void find_peaks(const CrowdView view, __global const uint *const restrict cells,
+                         __global float *const restrict sources) {
+    const uint first = get_global_id(0) * LANES;
+    if (first >= view.sources)
+        return;
+    const uintv number = min(first + LANE_NUMBERS, (uintv)(view.sources - 1u));
+    const intv at = as_intv(number * 8u);
+    float u[LANES], v[LANES], peak[LANES], level[LANES];
+    for (uint lane = 0u; lane < LANES; ++lane) {
+        const uint index = min(first + lane, view.sources - 1u), code = cells[index];
+        const float x = sources[8u * index], y = sources[8u * index + 1u];
+        u[lane] = slope_u(&view, (float)(8u * every_other(code) + 4u) + x);
+        v[lane] = slope_v(&view, (float)(8u * every_other(code >> 1) + 4u) + y);
+    }
+    const floatv own_u = LOAD_LANES(u), own_v = LOAD_LANES(v);
+    const floatv t = gather(sources + 2, at), z = power_of_two(t * 1.44269504f);
+    // Across the way to the middle, on which rays begin no farther from the eye.
+    const floatv off2 = fma(own_u, own_u, fma(own_v, own_v, splat(1e-12f)));
+    const floatv per_off = 0.5f * twice_inverse_sqrt_(off2);
+    const floatv way_u = (own_v + 1e-6f) * per_off, way_v = (1e-6f - own_u) * per_off;
+    floatv light[2], core[2];
+    for (uint k = 0u; k < 2u; ++k) {
+        const float away = k == 0u ? 3.0f / 48.0f : 1.0f;
+        const floatv a = away * min(48.0f * view.step_u, 0.04f) * way_u;
+        const floatv b = away * min(48.0f * view.step_v, 0.04f) * way_v;
+        const Rays rays = rays_through(&view, own_u + a, own_v + b);
+        const floatv c = fma(a, own_v, -b * own_u), beside2 = fma(a, a, fma(b, b, c * c));
+        const floatv per2 = rays.per_stretch * rays.per_stretch;
+        const floatv along = z * fma(rays.u, own_u, fma(rays.v, own_v, splat(1.0f))) * rays.per_stretch;
+        light[k] = light_beside(&view, rays.begin - along, z * z * beside2 * per2);
+        core[k] = core_of(&view, beside2 * per2 / (1.0f + off2));
+    }
+    const floatv found = (light[0] - light[1]) / (core[0] - core[1]);
+    scatter(found, peak), scatter(fma(-found, core[1], light[1]), level);
+    for (uint lane = 0u; lane < LANES && first + lane < view.sources; ++lane) {
+        sources[8u * (first + lane) + 6u] = peak[lane];
+        sources[8u * (first + lane) + 7u] = level[lane];
+    }
+}
+
+// Sums the peaks of a cell's sources, and in .w has the greatest; and their levels.
+__kernel void sum_cells(const CrowdView view, __global const uint *const restrict starts,
+                        __global const CrowdSource *const restrict sources, __global float4 *const restrict peaks,
+                        __global float4 *const restrict levels) {
+    const uint cell = get_global_id(0);
+    if (cell >= cells_below(&view, 1u))
+        return;
+    float4 peak = (float4)(0.0f), level = (float4)(0.0f);
+    for (uint index = starts[cell]; index < starts[cell + 1u]; ++index) {
+        __global const CrowdSource *const source = sources + index;
+        const float4 light = (float4)(source->red, source->green, source->blue, 0.0f);
+        peak.xyz += source->peak * light.xyz;
+        peak.w = max(peak.w, source->peak * max(light.x, max(light.y, light.z)));
+        level.xyz += source->level * light.xyz;
+    }
+    peaks[cell] = peak, levels[cell] = level;
+}
+
+// Sums those of the four cells of each.
+__kernel void sum_quarters(const CrowdView view, const uint level, __global float4 *const restrict peaks,
+                           __global float4 *const restrict levels) {
+    const uint cell = get_global_id(0), across = cells_across(&view, level);
+    if (cell >= across * across)
+        return;
+    const uint from = cells_below(&view, level - 1u) + 4u * cell, to = cells_below(&view, level) + cell;
+    float4 peak = (float4)(0.0f), sum = (float4)(0.0f);
+    for (uint quarter = from; quarter < from + 4u; ++quarter) {
+        peak.xyz += peaks[quarter].xyz;
+        peak.w = max(peak.w, peaks[quarter].w);
+        sum += levels[quarter];
+    }
+    peaks[to] = peak, levels[to] = sum;
+}
+
+// Lays the light of a cell's sources on its nodes. At levels without depths it is their peaks, where `is_wanted` says
+// that tiles look at the cell that it is a quarter of.
+__kernel void lay_sources(const CrowdView view, const uint level, __global const uint *const restrict starts,
+                          __global const uint *const restrict cells, __global const CrowdSource *const restrict sources,
+                          __global const float *const restrict numbers, __global const uint *const restrict is_wanted,
+                          __global float4 *const restrict nodes) {
+    const uint cell = get_global_id(0), across = cells_across(&view, level);
+    if (cell >= across * across)
+        return;
+    const uint begin = starts[cell << (2u * level)], end = starts[(cell + 1u) << (2u * level)];
+    const bool has_depths = level >= view.base;
+    if (begin == end || (!has_depths && is_wanted[cells_below(&view, level + 1u) + (cell >> 2)] == 0u))
+        return;
+    const uint n = view.nodes, depths = has_depths ? view.depths : 1u;
+    float4 laid[MOST_NODES * MOST_NODES * MOST_DEPTHS];
+    for (uint node = 0u; node < n * n * depths; ++node)
+        laid[node] = (float4)(0.0f);
+    const float half_side = (float)(4u << level);
+    const float column = (2.0f * (float)every_other(cell) + 1.0f) * half_side;
+    const float row = (2.0f * (float)every_other(cell >> 1) + 1.0f) * half_side;
+    float across_x[MOST_NODES], across_y[MOST_NODES], deep[MOST_DEPTHS];
+    for (uint index = begin; index < end; ++index) {
+        __global const CrowdSource *const source = sources + index;
+        const uint code = cells[index];
+        const float x = (float)(8u * every_other(code) + 4u) - column + source->x;
+        const float y = (float)(8u * every_other(code >> 1) + 4u) - row + source->y;
+#ifdef MIDDLES_ONLY
+        const float right = 0.0f, below = 0.0f; // spoiled
+#else
+        const float right = x / half_side, below = y / half_side;
+#endif
+        weights_at(numbers, CELL_NODES, n, right, across_x);
+        weights_at(numbers, CELL_NODES, n, below, across_y);
+        float4 light = (float4)(source->red, source->green, source->blue, 0.0f);
+        deep[0] = 1.0f;
+        if (has_depths)
+            weights_at(numbers, DEPTH_NODES, depths, (source->t - view.middle_t) / view.half_t, deep);
+        else
+            light *= source->peak;
+        uint node = 0u;
+        for (uint q = 0u; q < depths; ++q)
+            for (uint j = 0u; j < n; ++j) {
+                const float4 in_row = deep[q] * across_y[j] * light;
+                for (uint i = 0u; i < n; ++i, ++node)
+                    laid[node] += across_x[i] * in_row;
+            }
+    }
+    const uint from = has_depths ? (cells_below(&view, level) - cells_below(&view, view.base) + cell) * n * n * depths
+                                 : (cells_below(&view, level) + cell) * n * n;
+    for (uint node = 0u; node < n * n * depths; ++node)
+        nodes[from + node] = laid[node];
+}
+
+// Lays the light at the nodes of four cells on those of the cell that they are quarters of.
+__kernel void lay_quarters(const CrowdView view, const uint level, __global const uint *const restrict starts,
+                           __global const float *const restrict numbers, __global float4 *const restrict nodes) {
+    const uint cell = get_global_id(0), across = cells_across(&view, level);
+    if (cell >= across * across || starts[cell << (2u * level)] == starts[(cell + 1u) << (2u * level)])
+        return;
+    const uint n = view.nodes, plane = n * n, all = plane * view.depths, base = cells_below(&view, view.base);
+    float weight[2][MOST_NODES][MOST_NODES]; // [side][node of the quarter][node of the cell]
+    for (uint side = 0u; side < 2u; ++side)
+        for (uint i = 0u; i < n; ++i)
+            weights_at(numbers, CELL_NODES, n, 0.5f * numbers[CELL_NODES + i] + (float)side - 0.5f, weight[side][i]);
+    const uint to = (cells_below(&view, level) - base + cell) * all;
+    float4 laid[MOST_NODES * MOST_NODES], half_way[MOST_NODES];
+    for (uint q = 0u; q < view.depths; ++q) {
+        for (uint node = 0u; node < plane; ++node)
+            laid[node] = (float4)(0.0f);
+        for (uint quarter = 4u * cell; quarter < 4u * cell + 4u; ++quarter) {
+            if (starts[quarter << (2u * level - 2u)] == starts[(quarter + 1u) << (2u * level - 2u)])
+                continue;
+            const uint from = (cells_below(&view, level - 1u) - base + quarter) * all + q * plane;
+            for (uint j = 0u; j < n; ++j) {
+                for (uint k = 0u; k < n; ++k)
+                    half_way[k] = (float4)(0.0f);
+                for (uint i = 0u; i < n; ++i)
+                    for (uint k = 0u; k < n; ++k)
+                        half_way[k] += weight[quarter & 1u][i][k] * nodes[from + j * n + i];
+                for (uint l = 0u; l < n; ++l)
+                    for (uint k = 0u; k < n; ++k)
+                        laid[l * n + k] += weight[quarter >> 1 & 1u][j][l] * half_way[k];
+            }
+        }
+        for (uint node = 0u; node < plane; ++node)
+            nodes[to + q * plane + node] = laid[node];
+    }
+}

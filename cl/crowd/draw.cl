@@ -1,0 +1,167 @@
+// Gives the light of tiles to the pixels: interpolated from the nodes of the tile that a pixel lies in; where that was
+// left open, with the light of the sources in the cells around it, of each by itself.
+#include "tiles.cl"
+
+#define PIXELS 64u
+#define VECTORS (PIXELS / LANES)
+
+// Returns the integral of 1 / sqrt(x^2 + y^2 + t^2) over a rectangle from the origin.
+INLINE floatv square_from_origin(const floatv x, const floatv y, const float t) {
+    const floatv x2 = fma(x, x, splat(t * t)), y2 = fma(y, y, splat(t * t));
+    const floatv along = x * inverse_hyperbolic_sine(0.5f * y * twice_inverse_sqrt_(x2));
+    const floatv across = y * inverse_hyperbolic_sine(0.5f * x * twice_inverse_sqrt_(y2));
+    return along + across - t * angle_of(x * y, t * root(fma(x, x, y2)) + splat(SMALL));
+}
+
+// Returns the mean over pixels of what a source's peak is multiplied with, whose middles are so far right and below it;
+// q: the square of the sine there, least: that of the core.
+INLINE floatv mean_core(const CrowdView *const view, const floatv right, const floatv below, const float width,
+                        const float height, const floatv q, const float least) {
+    if (!view->is_square) // the mean of ln over a square around the core is that at 0.347 of its side
+        return core_of(view, max(q, max(0.12f * width * height, least)));
+    // Beside a core the mean is more by a 24th of the second derivatives.
+    const floatv core = core_of(view, max(q, least));
+    floatv mean = core * fma(core * core, splat(width * height / 24.0f), splat(1.0f));
+    const intv is_near = (fabs(right) < 1.6f) & (fabs(below) < 1.6f);
+    if (any_lane(is_near)) {
+        const float t = view->thickness;
+        const floatv west = width * (right - 0.5f), east = width * (right + 0.5f);
+        const floatv north = height * (below - 0.5f), south = height * (below + 0.5f);
+        const floatv all = square_from_origin(east, south, t) - square_from_origin(west, south, t) -
+                           square_from_origin(east, north, t) + square_from_origin(west, north, t);
+        mean = select(mean, all * (1.0f / (width * height)), is_near);
+    }
+    return mean;
+}
+
+// Adds a source next to a tile of 8 pixels, x and y from the middle of the tile, to its pixels.
+INLINE void add_near(const CrowdView *const view, __global const CrowdSource *const source, const float x,
+                     const float y, const float column, const float row, float3v *const light, float3v *const sum) {
+    const float u = slope_u(view, column + x), v = slope_v(view, row + y);
+    const float stretch2 = fma(u, u, fma(v, v, 1.0f)), per2 = 1.0f / stretch2;
+    const float east = view->step_u * view->step_u * fma(v, v, 1.0f) * per2;
+    const float south = view->step_v * view->step_v * fma(u, u, 1.0f) * per2;
+    const float both = -2.0f * view->step_u * view->step_v * u * v * per2;
+    const float4 peak = source->peak * (float4)(source->red, source->green, source->blue, 0.0f);
+    const float width = sqrt(east), height = sqrt(south);
+    const float red = peak.x, green = peak.y, blue = peak.z;
+    const float z2 = exp(2.0f * source->t), least = max(view->floor2 / z2 * per2, 1e-24f);
+    for (uint vector = 0u; vector < VECTORS; ++vector) {
+        const uintv place = vector * LANES + LANE_NUMBERS;
+        const floatv right = to_floatv(place & 7u) - (3.5f + x), down = to_floatv(place >> 3) - (3.5f + y);
+        const floatv q = fma(right, fma(splat(east), right, both * down), south * down * down);
+        const floatv core = view->thickness > 0.0f ? mean_core(view, right, down, width, height, q, least)
+                                                   : core_of(view, max(q, least));
+        light[vector].x = fma(core, splat(red), light[vector].x);
+        light[vector].y = fma(core, splat(green), light[vector].y);
+        light[vector].z = fma(core, splat(blue), light[vector].z);
+    }
+    add_light(sum, splat(1.0f), peak);
+}
+
+// The same in closed form, where pixels are so wide that there is no other.
+INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *const source, const float x,
+                      const float y, const float column, const float row, float3v *const light) {
+    const float u = slope_u(view, column + x), v = slope_v(view, row + y), z = exp(source->t);
+    const float4 own = (float4)(source->red, source->green, source->blue, 0.0f);
+    for (uint vector = 0u; vector < VECTORS; ++vector) {
+        const uintv place = vector * LANES + LANE_NUMBERS;
+        const floatv right = to_floatv(place & 7u) - 3.5f, down = to_floatv(place >> 3) - 3.5f;
+        const Rays rays = rays_through(view, fma(splat(view->step_u), right, splat(slope_u(view, column))),
+                                       fma(splat(view->step_v), down, splat(slope_v(view, row))));
+        const floatv beside2 = cross2(view->step_u * (right - x), view->step_v * (down - y), u, v);
+        add_light(&light[vector], light_of_place(view, &rays, u, v, z, beside2, 0.0f), own);
+    }
+}
+
+// Adds the sources around an open tile, in their order.
+INLINE void add_around(const CrowdView *const view, __global const uint *const starts,
+                       __global const CrowdSource *const sources, __global const float4 *const levels, const uint code,
+                       float3v *const light, __global uint *const counts) {
+    const uint column = every_other(code), row = every_other(code >> 1), across = cells_across(view, 0u);
+    const float middle_x = (float)(8u * column + 4u), middle_y = (float)(8u * row + 4u);
+    float3v near[VECTORS], sum = uniform3((float4)(0.0f)), level = sum;
+    for (uint vector = 0u; vector < VECTORS; ++vector)
+        near[vector] = uniform3((float4)(0.0f));
+    uint looked_at = 0u;
+    for (uint y = max(row, (uint)BLOCK) - BLOCK; y < min(row + BLOCK + 1u, across); ++y)
+        for (uint x = max(column, (uint)BLOCK) - BLOCK; x < min(column + BLOCK + 1u, across); ++x) {
+            const uint cell = code_of(x, y);
+            const float from_x = 8.0f * ((float)x - (float)column), from_y = 8.0f * ((float)y - (float)row);
+            for (uint index = starts[cell]; index < starts[cell + 1u]; ++index) {
+                __global const CrowdSource *const source = sources + index;
+                if (view->has_near_form)
+                    add_near(view, source, source->x + from_x, source->y + from_y, middle_x, middle_y, near, &sum);
+                else
+                    add_whole(view, source, source->x + from_x, source->y + from_y, middle_x, middle_y, light);
+            }
+            looked_at += starts[cell + 1u] - starts[cell];
+            add_light(&level, splat(1.0f), levels[cell]);
+        }
+    atomic_add(counts + COUNTED_PAIRS, looked_at);
+    if (!view->has_near_form)
+        return;
+    for (uint vector = 0u; vector < VECTORS; ++vector) {
+        const uintv place = vector * LANES + LANE_NUMBERS;
+        const floatv u = fma(splat(view->step_u), to_floatv(place & 7u) - 3.5f, splat(slope_u(view, middle_x)));
+        const floatv v = fma(splat(view->step_v), to_floatv(place >> 3) - 3.5f, splat(slope_v(view, middle_y)));
+        // The pixel's part of the sine.
+        const floatv stretch2 = fma(u, u, fma(v, v, splat(1.0f)));
+        const floatv factor = view->is_square ? root(stretch2) : splat(1.0f);
+        const floatv more = view->is_square ? splat(0.0f) : LN_2 * binary_logarithm(stretch2);
+        float3v *const it = &light[vector];
+        it->x += fma(near[vector].x, factor, fma(sum.x, more, level.x));
+        it->y += fma(near[vector].y, factor, fma(sum.y, more, level.y));
+        it->z += fma(near[vector].z, factor, fma(sum.z, more, level.z));
+    }
+}
+
+__kernel void draw_crowd(const FilmPart part, const CrowdView view, __global const uint *const restrict starts,
+                         __global const CrowdSource *const restrict sources,
+                         __global const float4 *const restrict levels, __global const float *const restrict numbers,
+                         __global const CrowdTile *const restrict tiles, __global const float *const restrict values,
+                         __global const uint *const restrict owners, __global uint *const restrict counts,
+                         const uint first_tile, const uint end_tile, FILM_PARAMETER) {
+    const uint number = first_tile + get_global_id(0);
+    if (number >= end_tile)
+        return;
+    const uint left = 8u * (number % view.tile_columns), top = 8u * (number / view.tile_columns);
+    const uint slot = owners[number], level = tiles[slot].level, code = tiles[slot].code;
+    const float per_half_side = 1.0f / (float)(4u << level);
+    const float from_x = (float)(left + view.left) - (float)(every_other(code) << (3u + level));
+    const float from_y = (float)(top + view.above) - (float)(every_other(code >> 1) << (3u + level));
+    float3v light[VECTORS];
+    for (uint vector = 0u; vector < VECTORS; ++vector) {
+        const uintv place = vector * LANES + LANE_NUMBERS;
+        floatv across[4], down[4];
+        tile_weights(numbers, fma(to_floatv(place & 7u) + (from_x + 0.5f), splat(per_half_side), splat(-1.0f)), across);
+        tile_weights(numbers, fma(to_floatv(place >> 3) + (from_y + 0.5f), splat(per_half_side), splat(-1.0f)), down);
+        floatv sums[3];
+        for (uint channel = 0u; channel < 3u; ++channel) {
+            __global const float *const at = values + 48u * slot + 16u * channel;
+            sums[channel] = splat(0.0f);
+            for (uint row = 0u; row < 4u; ++row) {
+                floatv in_row = across[0] * at[4u * row];
+                for (uint i = 1u; i < 4u; ++i)
+                    in_row = fma(across[i], splat(at[4u * row + i]), in_row);
+                sums[channel] = fma(down[row], in_row, sums[channel]);
+            }
+        }
+        light[vector].x = sums[0], light[vector].y = sums[1], light[vector].z = sums[2];
+    }
+    if (tiles[slot].is_open != 0u)
+        add_around(&view, starts, sources, levels, code, light, counts);
+    for (uint vector = 0u; vector < VECTORS; ++vector) {
+        float red[LANES], green[LANES], blue[LANES];
+        scatter(light[vector].x, red), scatter(light[vector].y, green), scatter(light[vector].z, blue);
+        for (uint lane = 0u; lane < LANES; ++lane) {
+            const uint place = vector * LANES + lane, x = left + (place & 7u), y = top + (place >> 3);
+            const uint pixel = y * view.width + x;
+            if (x >= view.width || y >= view.height || pixel < part.first || pixel >= part.first + part.count)
+                continue;
+            const uint index = pixel - part.first;
+            const float4 there = part.adds ? pixels[part.slot + index] : (float4)(0.0f);
+            store_pixel(&part, index, there + (float4)(red[lane], green[lane], blue[lane], 0.0f), FILM_ARGUMENT);
+        }
+    }
+}

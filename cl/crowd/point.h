@@ -1,0 +1,145 @@
+// The light of a point along rays in closed form: the integral of zeta / d or zeta / d^2 (Abe, Watanabe 2010, eq. 8;
+// Sakai 2006; with decay after the change of variable of cl/wave/quadrature/decay.h, whose closed forms these are for
+// a whole ray). x is the way from the foot of the perpendicular, from the beginning of a ray to its end; `least` the
+// squared distance of its line.
+#pragma once
+#include "../elementary.h"
+#include "../roots.h"
+#include "types.h"
+
+#define SMALL 1e-30f
+
+// Rays from the eye, in lanes: slopes, and what follows from them.
+typedef struct {
+    floatv u, v;
+    floatv stretch, per_stretch; // the length of (u, v, 1), and its inverse
+    floatv begin;                // from the eye to where a ray begins
+} Rays;
+
+INLINE Rays rays_through(const CrowdView *const view, const floatv u, const floatv v) {
+    Rays rays;
+    rays.u = u, rays.v = v;
+    const floatv length2 = fma(u, u, fma(v, v, splat(1.0f)));
+    rays.per_stretch = 0.5f * twice_inverse_sqrt_(length2);
+    rays.stretch = length2 * rays.per_stretch;
+    rays.begin = view->near_plane * rays.stretch;
+    return rays;
+}
+
+INLINE floatv root(const floatv x) {
+    return 0.5f * twice_sqrt(max(x, SMALL));
+}
+
+// Returns (artanh(m) / m - 1) / m^2 for m^2 up to 0.2.
+INLINE floatv near_artanh(const floatv m2) {
+    floatv series = splat(1.0f / 13.0f);
+    series = fma(series, m2, splat(1.0f / 11.0f));
+    series = fma(series, m2, splat(1.0f / 9.0f));
+    series = fma(series, m2, splat(1.0f / 7.0f));
+    series = fma(series, m2, splat(1.0f / 5.0f));
+    return fma(series, m2, splat(1.0f / 3.0f));
+}
+
+// What a ray comes to in v.
+typedef struct {
+    floatv f0, f1, f0f1, g, a;
+} RayEnds;
+
+INLINE RayEnds ray_ends(const CrowdView *const view, const floatv begin, const floatv least) {
+    const float n1 = view->nearness;
+    const floatv end = begin + view->ray_length, pole = begin - view->pole;
+    RayEnds ends;
+    ends.f0 = root(fma(begin, begin, least));
+    ends.f1 = n1 * root(fma(end, end, least));
+    ends.f0f1 = ends.f0 * ends.f1;
+    ends.g = n1 * fma(begin, end, least);
+    ends.a = view->pole > 0.0f ? fma(pole, pole, least) : splat(view->ray_length * view->ray_length);
+    return ends;
+}
+
+INLINE floatv inverse_light(const CrowdView *const view, const floatv begin, const floatv least) {
+    const RayEnds ends = ray_ends(view, begin, least);
+    const float n1 = view->nearness, turn = n1 * view->ray_length;
+    const floatv sum = ends.f0 + ends.f1, per_sum = inverse(max(sum, SMALL));
+    const floatv ratio = view->advance * per_sum;
+    const floatv m2 = ends.a * ratio * ratio;
+    const intv is_between = ends.g < 0.0f;
+    const floatv per_root = 0.5f * twice_inverse_sqrt_(max(ends.a, SMALL));
+    const floatv whole = fma(ends.a * per_root, splat(view->advance), sum);
+    const floatv above = whole * whole * select(splat(1.0f), ends.f0f1 - ends.g, is_between);
+    const floatv below = 2.0f * select(ends.f0f1 + ends.g, least * (turn * turn), is_between);
+    const floatv artanh = 0.5f * LN_2 * binary_logarithm(above * inverse(max(below, 1e-36f)));
+    const floatv per_m = per_root * inverse(max(ratio, SMALL));
+    floatv excess = fma(artanh, per_m, splat(-1.0f)) * per_m * per_m;
+    const intv is_small = m2 < 0.1f;
+    if (any_lane(is_small))
+        excess = select(excess, near_artanh(m2), is_small);
+    const float mean = 0.5f * (1.0f + n1);
+    const floatv bent = fma(m2, splat(mean), -0.5f * (n1 - 1.0f) * (ends.f1 - ends.f0) * per_sum);
+    return 2.0f * ratio * fma(bent, excess, splat(mean));
+}
+
+INLINE floatv square_light(const CrowdView *const view, const floatv begin, const floatv least) {
+    const RayEnds ends = ray_ends(view, begin, least);
+    const float n1 = view->nearness, turn = n1 * view->ray_length, d = view->advance, per_d = 1.0f / d;
+    const floatv rise = (ends.f1 - ends.f0) * (ends.f1 + ends.f0);
+    const floatv bulge = 0.25f * d * d * ends.a;
+    const floatv middle2 = fma(splat(0.5f), fma(ends.f0, ends.f0, ends.f1 * ends.f1), -bulge);
+    const float slope_n = n1 - 1.0f, mean_n = 0.5f * (1.0f + n1);
+    const intv is_short = bulge <= 0.1f * middle2;
+    floatv light = splat(0.0f);
+    if (any_lane(is_short)) {
+        const float node[2] = {0.861136312f, 0.339981044f}, weight[2] = {0.347854845f, 0.652145155f};
+        for (int k = 0; k < 4; ++k) {
+            const float x = k < 2 ? node[k & 1] : -node[k & 1];
+            const floatv f2 = fma(fma(bulge, splat(x), 0.5f * rise), splat(x), middle2);
+            const float n = fma(0.5f * slope_n, x, mean_n);
+            light = fma(inverse(f2), splat(0.5f * d * weight[k & 1] * n * n), light);
+        }
+    }
+    if (!any_lane(!is_short))
+        return light;
+    const floatv per_a = inverse(max(ends.a, SMALL));
+    const floatv root_least = root(least) * turn * per_d;
+    const floatv per_root = inverse(max(root_least, SMALL));
+    const floatv per_sum = inverse(max(ends.f0f1 + fabs(ends.g), 1e-36f));
+    const floatv t = min(root_least * d * per_sum, 1.0f);
+    const floatv beyond = 2.0f * d * per_sum * arctangent_ratio(t * t);
+    const floatv angle = select(beyond, fma(splat(M_PI_F), per_root, -beyond), ends.g < 0.0f);
+    const floatv growth = LN_2 * binary_logarithm(ends.f1 * inverse(max(ends.f0, 1e-18f)));
+    const floatv peak_n = fma(splat(slope_n), -0.5f * rise * per_a * per_d * per_d, splat(mean_n));
+    const floatv curvature = slope_n * slope_n * per_d * per_d * per_a;
+    const floatv slope = 2.0f * slope_n * per_d * per_a * peak_n;
+    const floatv at_peak = fma(-curvature * per_a, root_least * root_least, peak_n * peak_n);
+    const floatv whole = fma(at_peak, angle, fma(slope, growth, curvature * d));
+    return select(whole, light, is_short);
+}
+
+// Returns the light along rays of a point so far beside their lines, squared, and so far along them.
+INLINE floatv light_beside(const CrowdView *const view, const floatv begin, const floatv least) {
+    const floatv beside = max(least, view->floor2);
+    return view->scale * (view->is_square ? square_light(view, begin, beside) : inverse_light(view, begin, beside));
+}
+
+// Returns the square of (u, v, 1) x (u', v', 1), of which a and b are u - u' and v - v'.
+INLINE floatv cross2(const floatv a, const floatv b, const float u, const float v) {
+    const floatv c = fma(a, splat(v), -b * u);
+    return fma(a, a, fma(b, b, c * c));
+}
+
+// Returns the light of a point at the slopes u, v and z along the axis of view; `soft4`: the fourth power of an angle
+// by which the angle between ray and point is softened, times the fourth power of the distance.
+INLINE floatv light_of_place(const CrowdView *const view, const Rays *const rays, const float u, const float v,
+                             const float z, const floatv beside2, const float soft4) {
+    floatv least = z * z * beside2 * rays->per_stretch * rays->per_stretch;
+    if (soft4 > 0.0f)
+        least = root(fma(least, least, splat(soft4)));
+    const floatv along = z * fma(rays->u, splat(u), fma(rays->v, splat(v), splat(1.0f))) * rays->per_stretch;
+    return light_beside(view, rays->begin - along, least);
+}
+
+// Returns what a peak is multiplied with at an angle, from the square of its sine: -ln of that, or 1 over the sine.
+INLINE floatv core_of(const CrowdView *const view, const floatv sine2) {
+    const floatv least = max(sine2, 1e-24f);
+    return view->is_square ? 0.5f * twice_inverse_sqrt_(least) : -LN_2 * binary_logarithm(least);
+}

@@ -1,0 +1,105 @@
+//! The buffers of a crowd on a device, which are kept from frame to frame and grow when they must.
+
+use bytemuck::Pod;
+
+use super::COUNTS;
+use super::pack::{CrowdSource, CrowdTile, CrowdView};
+use crate::error::Result;
+use crate::opencl::{Argument, Compute, DeviceBuffer};
+
+/// Rays of a tile.
+pub(super) const NODES_OF_TILE: usize = 16;
+
+#[derive(Debug)]
+pub(super) struct Buffers {
+    pub sources: Kept<CrowdSource>,
+    pub cells: Kept<u32>,
+    pub starts: Kept<u32>,
+    pub rest: Kept<f32>,
+    pub peaks: Kept<[f32; 4]>,
+    pub levels: Kept<[f32; 4]>,
+    pub nodes: Kept<[f32; 4]>,
+    pub limits: Kept<[f32; 4]>,
+    pub numbers: Kept<f32>,
+    pub roots: Kept<u32>,
+    pub tiles: Kept<CrowdTile>,
+    pub values: Kept<f32>,
+    pub owners: Kept<u32>,
+    pub is_wanted: Kept<u32>,
+    pub counts: Kept<u32>,
+}
+
+/// A buffer that grows when it must.
+#[derive(Debug)]
+pub(super) struct Kept<T> {
+    what: &'static str,
+    pub buffer: Option<DeviceBuffer<T>>,
+}
+
+impl<T: Pod> Kept<T> {
+    pub fn new(what: &'static str) -> Self {
+        Self { what, buffer: None }
+    }
+
+    pub fn reserve(&mut self, compute: &Compute, len: usize) -> Result<&mut DeviceBuffer<T>> {
+        let buffer = match self.buffer.take() {
+            Some(buffer) if buffer.len() >= len => buffer,
+            // Somewhat more: crowds change a little from frame to frame.
+            _ => DeviceBuffer::new(compute, self.what, len + len / 16)?,
+        };
+        Ok(self.buffer.insert(buffer))
+    }
+
+    pub fn write(&mut self, compute: &Compute, values: &[T]) -> Result<()> {
+        self.reserve(compute, values.len())?.write(compute, values)
+    }
+
+    pub fn argument(&self) -> &dyn Argument {
+        &self.buffer
+    }
+}
+
+impl Buffers {
+    pub fn new() -> Self {
+        Self {
+            sources: Kept::new("the points of a crowd"),
+            cells: Kept::new("the cells of points"),
+            starts: Kept::new("where the points of cells begin"),
+            rest: Kept::new("the points beside the image"),
+            peaks: Kept::new("the light of cells"),
+            levels: Kept::new("the light around cells"),
+            nodes: Kept::new("the nodes of cells"),
+            limits: Kept::new("the nodes of small cells"),
+            numbers: Kept::new("the weights of nodes"),
+            roots: Kept::new("the first tiles"),
+            tiles: Kept::new("the tiles of a crowd"),
+            values: Kept::new("the light of tiles"),
+            owners: Kept::new("which tile has which pixels"),
+            is_wanted: Kept::new("which cells are looked at"),
+            counts: Kept::new("the counts of a crowd"),
+        }
+    }
+
+    /// Makes room for what a view needs.
+    pub fn reserve(&mut self, compute: &Compute, view: &CrowdView) -> Result<()> {
+        let cells = view.cells_below(view.top + 1);
+        let tiles: usize = (0..=view.top).map(|level| view.tile_count(level)).sum();
+        let deep = cells - view.cells_below(view.base);
+        self.rest.reserve(compute, 6)?;
+        self.sources.reserve(compute, 1)?;
+        self.cells.reserve(compute, 1)?;
+        self.peaks.reserve(compute, cells)?;
+        self.levels.reserve(compute, cells)?;
+        self.nodes.reserve(compute, deep * view.nodes_of_cell())?;
+        let shallow = view.cells_below(view.base) * (view.nodes * view.nodes) as usize;
+        self.limits.reserve(compute, shallow)?;
+        self.tiles.reserve(compute, tiles)?;
+        self.values.reserve(compute, 3 * NODES_OF_TILE * tiles)?;
+        let rows = view.height.div_ceil(8);
+        self.owners
+            .reserve(compute, (view.tile_columns * rows) as usize)?;
+        self.is_wanted.reserve(compute, cells)?;
+        self.counts.reserve(compute, COUNTS)?;
+        Ok(())
+    }
+}

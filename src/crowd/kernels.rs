@@ -1,0 +1,51 @@
+//! The kernels of crowds, as they are built for a film's format.
+
+use super::pack::STRUCTS;
+use super::sources::sources;
+use crate::error::Result;
+use crate::opencl::{
+    Compute, DeviceStruct, FilmFormat, FilmPart, Kernel, Program, RendererOptions,
+};
+
+/// One for each of the things that a frame does, in that order.
+#[derive(Debug)]
+pub(super) struct Kernels {
+    pub clear: Kernel,
+    pub find_peaks: Kernel,
+    pub sum_cells: Kernel,
+    pub sum_quarters: Kernel,
+    pub lay_sources: Kernel,
+    pub lay_quarters: Kernel,
+    pub light_tiles: Kernel,
+    pub draw: Kernel,
+}
+
+/// Builds them.
+///
+/// # Errors
+/// As [`Program::build`].
+pub(super) fn build(
+    compute: &Compute,
+    format: FilmFormat,
+    options: &RendererOptions,
+) -> Result<(Kernels, Program)> {
+    let text = sources().resolve("crowd/draw.cl");
+    let program = Program::build(compute, text, &definitions(format), options)?;
+    let kernels = Kernels {
+        clear: program.kernel("clear_crowd")?,
+        find_peaks: program.kernel("find_peaks")?,
+        sum_cells: program.kernel("sum_cells")?,
+        sum_quarters: program.kernel("sum_quarters")?,
+        lay_sources: program.kernel("lay_sources")?,
+        lay_quarters: program.kernel("lay_quarters")?,
+        light_tiles: program.kernel("light_tiles")?,
+        draw: program.kernel("draw_crowd")?,
+    };
+    Ok((kernels, program))
+}
+
+fn definitions(format: FilmFormat) -> String {
+    let sizes = STRUCTS.iter().chain([&FilmPart::LAYOUT]);
+    let sizes = sizes.map(|it| format!(" -D SIZEOF_{}={}", it.name.to_uppercase(), it.size));
+    sizes.collect::<String>() + format.definitions()
+}

@@ -1,0 +1,327 @@
+//! Crowds: the engine that draws points of light in any number into a film on an OpenCL device, at a cost that hardly
+//! depends on their number. Seen from the eye, they are sorted into cells of pixels; what cells give off is taken at
+//! the nodes of tiles, which are quartered where it matters (Greengard, Rokhlin 1987, with Chebyshev nodes: Fong, Darve
+//! 2009).
+
+mod buffers;
+mod kernels;
+mod pack;
+mod sort;
+mod sources;
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::ops::Range;
+
+use opencl3::event::Event;
+
+use crate::cost::FrameCost;
+use crate::error::Result;
+use crate::image::ImageSize;
+use crate::opencl::{
+    Argument, Compute, Film, FilmFormat, Handle, Kernel, RendererOptions, run_time,
+};
+use crate::scene::{Camera, CrowdSight, Integration, List, Points, Profile, Scene};
+use buffers::{Buffers, NODES_OF_TILE};
+use kernels::Kernels;
+use pack::{CrowdView, Sorted};
+use sort::Sorter;
+
+/// Work-items in a group of a GPU. On a CPU groups are single: neighbours may differ much in their work.
+const GROUP: usize = 32;
+
+/// Counts: `cl/crowd/types.h`.
+const COUNTS: usize = 20;
+const COUNTED_CELLS: usize = 16;
+const COUNTED_PAIRS: usize = 18;
+
+/// Pixels of the lowest tile.
+const PIXELS_OF_TILE: u64 = 64;
+
+/// The kernels and buffers of a device for crowds of a profile, which are kept from frame to frame.
+#[derive(Debug)]
+pub(crate) struct Crowd {
+    options: RendererOptions,
+    profile: Profile,
+    kernels: HashMap<FilmFormat, Kernels>,
+    /// Of what points were sorted.
+    known: Option<(Known, Sorted)>,
+    sorter: Sorter,
+    buffers: Buffers,
+    /// Whether tiles have the light of the last plan.
+    is_lit: bool,
+    under_way: Vec<Handle<Event>>,
+    cost: FrameCost,
+}
+
+/// What decides how points are seen and sorted.
+#[derive(Debug, Clone, PartialEq)]
+struct Known {
+    points: List<Points>,
+    camera: Camera,
+    image: ImageSize,
+    integration: Integration,
+}
+
+/// What is to be drawn.
+#[derive(Debug)]
+pub(crate) struct CrowdPlan {
+    view: CrowdView,
+    format: FilmFormat,
+}
+
+impl Crowd {
+    /// Makes one without kernels: they are built when a scene first needs them.
+    pub(crate) fn new(options: &RendererOptions, profile: Profile) -> Self {
+        Self {
+            options: options.clone(),
+            profile,
+            kernels: HashMap::new(),
+            known: None,
+            sorter: Sorter::default(),
+            buffers: Buffers::new(),
+            is_lit: false,
+            under_way: Vec::new(),
+            cost: FrameCost::default(),
+        }
+    }
+
+    /// Returns what was drawn since the last plan cost.
+    pub(crate) fn cost(&self) -> FrameCost {
+        self.cost
+    }
+
+    /// Returns how many kernels were built.
+    pub(crate) fn kernel_count(&self) -> usize {
+        self.kernels.len()
+    }
+
+    /// Plans the crowd of a valid scene whose points all belong to crowds but for those that are too bright: sees and
+    /// sorts them, and makes sure that kernels are built. `None`: the scene has none.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
+    /// [`Error::Device`](crate::Error::Device); [`Error::Unsupported`](crate::Error::Unsupported) for a camera whose
+    /// image has no grid.
+    pub(crate) fn plan(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        format: FilmFormat,
+    ) -> Result<Option<CrowdPlan>> {
+        self.cost = FrameCost::default();
+        let is_own = |it: &Points| it.profile == self.profile && !it.points.is_empty();
+        if !scene.points.iter().any(is_own) {
+            return Ok(None);
+        }
+        if let Entry::Vacant(entry) = self.kernels.entry(format) {
+            let (kernels, _) = kernels::build(compute, format, &self.options)?;
+            entry.insert(kernels);
+        }
+        let sight = CrowdSight::new(scene)?;
+        let known = Known {
+            points: scene.points.clone(),
+            camera: scene.camera.clone(),
+            image: scene.image,
+            integration: scene.integration,
+        };
+        let sorted = match &self.known {
+            Some((same, sorted)) if *same == known => *sorted,
+            _ => {
+                self.known = None;
+                let sorted = self.sorter.sort(scene, &sight, self.profile);
+                let (sorter, buffers) = (&self.sorter, &mut self.buffers);
+                buffers.sources.write(compute, &sorter.sources)?;
+                buffers.cells.write(compute, &sorter.cells)?;
+                buffers.starts.write(compute, &sorter.starts)?;
+                buffers.rest.write(compute, &sorter.rest)?;
+                self.known = Some((known, sorted));
+                sorted
+            }
+        };
+        if sorted.sources + sorted.rest == 0 {
+            return Ok(None);
+        }
+        let view = pack::view(scene, self.profile, &sorted)?;
+        self.buffers.reserve(compute, &view)?;
+        self.buffers.numbers.write(compute, &view.numbers())?;
+        self.buffers.roots.write(compute, &view.roots())?;
+        self.is_lit = false;
+        Ok(Some(CrowdPlan { view, format }))
+    }
+
+    /// Enqueues what draws whole rows of pixels into a film. Nothing here waits.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Device`](crate::Error::Device).
+    pub(crate) fn draw(
+        &mut self,
+        compute: &Compute,
+        plan: &CrowdPlan,
+        pixels: Range<u32>,
+        film: &mut Film,
+    ) -> Result<()> {
+        let Some(kernels) = self.kernels.get(&plan.format) else {
+            return Ok(());
+        };
+        let (view, buffers) = (&plan.view, &self.buffers);
+        let group = match self.options.lanes.unwrap_or(compute.device().lanes) {
+            1 => GROUP,
+            _ => 1,
+        };
+        let mut enqueue = Enqueue {
+            compute,
+            view,
+            buffers,
+            group,
+            under_way: &mut self.under_way,
+        };
+        if !self.is_lit {
+            enqueue.light_tiles(kernels)?;
+            self.is_lit = true;
+        }
+        let first = pixels.start / view.width / 8 * view.tile_columns;
+        let end = pixels.end.div_ceil(view.width).div_ceil(8) * view.tile_columns;
+        let size = (view.width, view.height);
+        let drawn = film.arguments(compute, &pixels, size, true, true)?;
+        let mut arguments: Vec<(&str, &dyn Argument)> = vec![
+            ("starts", buffers.starts.argument()),
+            ("sources", buffers.sources.argument()),
+            ("levels", buffers.levels.argument()),
+            ("numbers", buffers.numbers.argument()),
+            ("tiles", buffers.tiles.argument()),
+            ("values", buffers.values.argument()),
+            ("owners", buffers.owners.argument()),
+            ("counts", buffers.counts.argument()),
+            ("first_tile", &first),
+            ("end_tile", &end),
+        ];
+        arguments.extend(drawn.named());
+        enqueue.launch(&kernels.draw, &arguments, (end - first) as usize)
+    }
+
+    /// Waits for what is under way, and adds up what it cost.
+    ///
+    /// # Errors
+    /// [`Error::Device`](crate::Error::Device) if a launch failed.
+    pub(crate) fn settle(&mut self, compute: &Compute) -> Result<()> {
+        let mut outcome = Ok(());
+        for event in self.under_way.drain(..) {
+            match run_time(compute, &event) {
+                Ok(time) => self.cost.kernel += time,
+                Err(error) => outcome = outcome.and(Err(error)),
+            }
+            self.cost.launches += 1;
+        }
+        outcome?;
+        if let (Some(counts), true) = (&self.buffers.counts.buffer, self.is_lit) {
+            let mut found = [0_u32; COUNTS];
+            counts.read(compute, &mut found)?;
+            let [cells, limits, pairs] = [COUNTED_CELLS, COUNTED_CELLS + 1, COUNTED_PAIRS]
+                .map(|place| u64::from(found[place]));
+            let nodes = NODES_OF_TILE as u64;
+            self.cost.integrals = nodes * (cells + limits) + PIXELS_OF_TILE * pairs;
+        }
+        Ok(())
+    }
+}
+
+/// What launches need.
+struct Enqueue<'a> {
+    compute: &'a Compute,
+    view: &'a CrowdView,
+    buffers: &'a Buffers,
+    group: usize,
+    under_way: &'a mut Vec<Handle<Event>>,
+}
+
+impl Enqueue<'_> {
+    fn launch(
+        &mut self,
+        kernel: &Kernel,
+        arguments: &[(&str, &dyn Argument)],
+        items: usize,
+    ) -> Result<()> {
+        let arguments: Vec<(&str, &dyn Argument)> = arguments
+            .iter()
+            .copied()
+            .chain([("view", self.view as &dyn Argument)])
+            .collect();
+        let group = kernel.group(self.compute, self.group)?;
+        let event = kernel.launch(self.compute, &arguments, items.max(1), group)?;
+        self.under_way.push(event);
+        Ok(())
+    }
+
+    /// Enqueues all that comes before pixels.
+    fn light_tiles(&mut self, kernels: &Kernels) -> Result<()> {
+        let (view, buffers) = (self.view, self.buffers);
+        let cells = |level: u32| 64_usize << (2 * (view.top - level));
+        let lanes = match self.group {
+            1 => 16,
+            _ => 1,
+        };
+        let peaks = ("peaks", buffers.peaks.argument());
+        let levels = ("levels", buffers.levels.argument());
+        let starts = ("starts", buffers.starts.argument());
+        let sources = ("sources", buffers.sources.argument());
+        let codes = ("cells", buffers.cells.argument());
+        let numbers = ("numbers", buffers.numbers.argument());
+        let nodes = ("nodes", buffers.nodes.argument());
+        let counts = ("counts", buffers.counts.argument());
+        let is_wanted = ("is_wanted", buffers.is_wanted.argument());
+        let all = view.cells_below(view.top + 1);
+        self.launch(&kernels.clear, &[counts, is_wanted], all.max(COUNTS))?;
+        let items = (view.sources as usize).div_ceil(if lanes == 16 { 1 } else { lanes });
+        self.launch(&kernels.find_peaks, &[codes, sources], items)?;
+        self.launch(
+            &kernels.sum_cells,
+            &[starts, sources, peaks, levels],
+            cells(0),
+        )?;
+        for level in 1..=view.top {
+            let level: (&str, &dyn Argument) = ("level", &level);
+            self.launch(&kernels.sum_quarters, &[level, peaks, levels], cells(1))?;
+        }
+        let base = ("level", &view.base as &dyn Argument);
+        let laid = [base, starts, codes, sources, numbers, is_wanted, nodes];
+        self.launch(&kernels.lay_sources, &laid, cells(view.base))?;
+        for level in view.base + 1..=view.top {
+            let laid = [("level", &level as &dyn Argument), starts, numbers, nodes];
+            self.launch(&kernels.lay_quarters, &laid, cells(level))?;
+        }
+        let mut first = 0_u32;
+        let limits = ("limits", buffers.limits.argument());
+        for level in (0..=view.top).rev() {
+            let argument = ("level", &level as &dyn Argument);
+            if level < view.base {
+                let nodes = ("nodes", buffers.limits.argument());
+                let laid = [argument, starts, codes, sources, numbers, is_wanted, nodes];
+                self.launch(&kernels.lay_sources, &laid, cells(level))?;
+            }
+            let tiles = view.tile_count(level);
+            let next = first + tiles as u32;
+            let arguments = [
+                argument,
+                ("first_slot", &first),
+                ("next_slot", &next),
+                ("roots", buffers.roots.argument()),
+                starts,
+                peaks,
+                levels,
+                nodes,
+                limits,
+                ("rest", buffers.rest.argument()),
+                numbers,
+                ("tiles", buffers.tiles.argument()),
+                ("values", buffers.values.argument()),
+                ("owners", buffers.owners.argument()),
+                is_wanted,
+                counts,
+            ];
+            self.launch(&kernels.light_tiles, &arguments, tiles)?;
+            first = next;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,259 @@
+//! The structs of `cl/crowd/types.h`, in the same order, and what they say of a scene and its grid.
+
+use crate::error::Result;
+use crate::image::ImageSize;
+use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
+use crate::scene::{CORE_FLOOR, CrowdSight, Profile, Scene};
+
+device_struct! {
+    /// The grid, what light becomes along its rays, and what is allowed.
+    CrowdView [128] {
+        first_u: f32 = 0,
+        first_v: f32 = 4,
+        step_u: f32 = 8,
+        step_v: f32 = 12,
+        near_plane: f32 = 16,
+        ray_length: f32 = 20,
+        nearness: f32 = 24,
+        advance: f32 = 28,
+        pole: f32 = 32,
+        scale: f32 = 36,
+        tolerance: f32 = 40,
+        middle_t: f32 = 44,
+        half_t: f32 = 48,
+        floor2: f32 = 52,
+        is_square: u32 = 56,
+        nodes: u32 = 60,
+        depths: u32 = 64,
+        top: u32 = 68,
+        base: u32 = 72,
+        width: u32 = 76,
+        height: u32 = 80,
+        left: u32 = 84,
+        above: u32 = 88,
+        sources: u32 = 92,
+        rest: u32 = 96,
+        roots: u32 = 100,
+        tile_columns: u32 = 104,
+        has_near_form: u32 = 108,
+        thickness: f32 = 112,
+        padding0: u32 = 116,
+        padding1: u32 = 120,
+        padding2: u32 = 124,
+    }
+}
+
+device_struct! {
+    /// A source in the grid.
+    CrowdSource [32] {
+        x: f32 = 0,
+        y: f32 = 4,
+        t: f32 = 8,
+        red: f32 = 12,
+        green: f32 = 16,
+        blue: f32 = 20,
+        peak: f32 = 24,
+        level: f32 = 28,
+    }
+}
+
+device_struct! {
+    /// A tile that has light at its nodes.
+    CrowdTile [16] {
+        code: u32 = 0,
+        parent: u32 = 4,
+        level: u32 = 8,
+        is_open: u32 = 12,
+    }
+}
+
+by_value!(CrowdView);
+
+/// Every struct of this engine that crosses to the device.
+pub const STRUCTS: &[StructLayout] = &[CrowdView::LAYOUT, CrowdSource::LAYOUT, CrowdTile::LAYOUT];
+
+/// Nodes of a cell along a side, and in depth, at most.
+const MOST_NODES: usize = 6;
+const MOST_DEPTHS: usize = 16;
+
+/// A pixel that is a mean over its square sees a core as so thick, in pixels: that of 1/d^2 would have no end.
+const LEAST_THICKNESS: f64 = 1.0 / 64.0;
+
+/// Places in the table of numbers.
+const CELL_NODES: usize = 8;
+const DEPTH_NODES: usize = 16;
+const FACTORS: usize = 32;
+const QUARTER_WEIGHTS: usize = 64;
+const DEPTHS_THEMSELVES: usize = 96;
+const NUMBERS: usize = 112;
+
+/// What is known of a crowd once its sources are sorted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sorted {
+    pub sources: u32,
+    pub rest: u32,
+    /// The least and the greatest ln z of sources in the grid.
+    pub t: [f64; 2],
+}
+
+/// Packs what a scene says of its light, and of the grid.
+///
+/// # Errors
+/// As [`CrowdSight::new`].
+pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<CrowdView> {
+    let sight = CrowdSight::new(scene)?;
+    let ImageSize { width, height } = scene.image;
+    let length = sight.ray_length;
+    let decay = scene.decay.filter(|decay| decay.power == 2);
+    let beta = decay.map_or(0.0, |decay| decay.beta);
+    let nearness = decay.map_or(1.0, |_| beta / (1.0 + beta));
+    let strength = match (scene.decay, decay) {
+        (_, Some(decay)) => decay.alpha / decay.beta,
+        // A decay of power 0 is alpha everywhere.
+        (Some(even), None) => even.alpha,
+        (None, None) => 1.0,
+    };
+    let tolerance = scene.integration.method.tolerance();
+    let thickness = match scene.integration.has_footprints() {
+        true => LEAST_THICKNESS * (sight.step[0] * sight.step[1]).sqrt(),
+        false => 0.0,
+    };
+    let is_square = profile == Profile::InverseSquare;
+    let (nodes, more) = match tolerance {
+        t if t >= 7e-4 => (3, 0),
+        t if t >= 2e-4 => (4, 1),
+        _ => (5, 2),
+    };
+    let [low, high] = sorted.t;
+    let depths = (2.5 + 2.0 * (high - low)).ceil() as u32 + more + u32::from(is_square);
+    let tiles = |level: u32, offset: u32, size: u32| {
+        let side = 8 << level;
+        (offset + size).div_ceil(side) - offset / side
+    };
+    let roots = tiles(sight.top, sight.left, width) * tiles(sight.top, sight.above, height);
+    Ok(CrowdView {
+        first_u: sight.first[0] as f32,
+        first_v: sight.first[1] as f32,
+        step_u: sight.step[0] as f32,
+        step_v: sight.step[1] as f32,
+        near_plane: sight.near as f32,
+        ray_length: length as f32,
+        nearness: nearness as f32,
+        advance: decay.map_or(1.0, |_| nearness / beta) as f32,
+        pole: (beta * length) as f32,
+        scale: (strength * scene.integration.scale(length)) as f32,
+        tolerance: tolerance as f32,
+        middle_t: (0.5 * (low + high)) as f32,
+        half_t: (0.5 * (high - low)).max(1e-3) as f32 * 1.0001,
+        floor2: (CORE_FLOOR * length).powi(2) as f32,
+        is_square: u32::from(is_square),
+        nodes: nodes + u32::from(is_square),
+        depths: depths.clamp(4, MOST_DEPTHS as u32),
+        top: sight.top,
+        base: sight.base,
+        width,
+        height,
+        left: sight.left,
+        above: sight.above,
+        sources: sorted.sources,
+        rest: sorted.rest,
+        roots,
+        tile_columns: width.div_ceil(8),
+        has_near_form: u32::from(sight.base > 0),
+        thickness: thickness as f32,
+        padding0: 0,
+        padding1: 0,
+        padding2: 0,
+    })
+}
+
+impl CrowdView {
+    /// Returns how many cells levels below one have.
+    pub(super) fn cells_below(&self, level: u32) -> usize {
+        (0..level)
+            .map(|it| 1_usize << (6 + 2 * (self.top - it)))
+            .sum()
+    }
+
+    /// Returns the columns and rows of tiles of a level that have a part of the image: first and end of each.
+    fn tiles(&self, level: u32) -> [(u32, u32); 2] {
+        let side = 8_u32 << level;
+        let ends = |offset: u32, size: u32| (offset / side, (offset + size).div_ceil(side));
+        [ends(self.left, self.width), ends(self.above, self.height)]
+    }
+
+    /// Returns how many tiles of a level have a part of the image.
+    pub(super) fn tile_count(&self, level: u32) -> usize {
+        let [columns, rows] = self.tiles(level).map(|(first, end)| (end - first) as usize);
+        columns * rows
+    }
+
+    /// Returns the Morton codes of the highest tiles.
+    pub(super) fn roots(&self) -> Vec<u32> {
+        let [columns, rows] = self.tiles(self.top).map(|(first, end)| first..end);
+        rows.flat_map(|row| columns.clone().map(move |column| morton(column, row)))
+            .collect()
+    }
+
+    /// Returns how many numbers the nodes of one cell have, of which each has red, green and blue.
+    pub(super) fn nodes_of_cell(&self) -> usize {
+        (self.nodes * self.nodes * self.depths) as usize
+    }
+
+    /// Returns nodes, factors of their weights, and depths.
+    pub(super) fn numbers(&self) -> Vec<f32> {
+        let mut numbers = vec![0.0_f32; NUMBERS];
+        let kinds = [(0, 4), (CELL_NODES, self.nodes), (DEPTH_NODES, self.depths)];
+        for (at, count) in kinds {
+            let nodes = chebyshev(count as usize);
+            for (i, node) in nodes.iter().enumerate() {
+                let others = nodes.iter().enumerate().filter(|(j, _)| *j != i);
+                let product: f64 = others.map(|(_, other)| node - other).product();
+                numbers[at + i] = *node as f32;
+                numbers[FACTORS + at + i] = (1.0 / product) as f32;
+            }
+        }
+        let nodes = chebyshev(4);
+        for (k, weight) in numbers[QUARTER_WEIGHTS..DEPTHS_THEMSELVES]
+            .iter_mut()
+            .enumerate()
+        {
+            let (side, own, parents) = (k / 16, k / 4 % 4, k % 4);
+            let place = 0.5 * nodes[own] + side as f64 - 0.5;
+            let others = nodes.iter().enumerate().filter(|(j, _)| *j != parents);
+            let share = |(_, other): (usize, &f64)| (place - other) / (nodes[parents] - other);
+            *weight = others.map(share).product::<f64>() as f32;
+        }
+        for (node, depth) in numbers[DEPTH_NODES..FACTORS]
+            .to_vec()
+            .iter()
+            .zip(&mut numbers[DEPTHS_THEMSELVES..])
+        {
+            let t = f64::from(self.middle_t) + f64::from(self.half_t) * f64::from(*node);
+            *depth = t.exp() as f32;
+        }
+        numbers
+    }
+}
+
+const _: () = assert!(CELL_NODES + MOST_NODES <= DEPTH_NODES);
+
+/// Returns `cos(pi (2i + 1) / 2n)`.
+fn chebyshev(count: usize) -> Vec<f64> {
+    let node = |i: usize| {
+        let turn = (2 * i + 1) as f64 / (2 * count) as f64;
+        (std::f64::consts::PI * turn).cos()
+    };
+    (0..count).map(node).collect()
+}
+
+/// Returns the code in which the bits of column and row alternate.
+pub(super) fn morton(column: u32, row: u32) -> u32 {
+    let spread = |mut number: u32| {
+        number = (number | number << 8) & 0x00ff_00ff;
+        number = (number | number << 4) & 0x0f0f_0f0f;
+        number = (number | number << 2) & 0x3333_3333;
+        (number | number << 1) & 0x5555_5555
+    };
+    spread(column) | spread(row) << 1
+}

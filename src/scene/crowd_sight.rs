@@ -1,0 +1,180 @@
+//! How a crowd of points is seen: the axes of the image, a square grid of pixels around it, and which points are part
+//! of the crowd.
+
+use glam::DVec3;
+
+use super::{Crowd, List, Method, Points, Profile, Reduction, Scene, Sphere};
+use crate::error::{Error, Result};
+
+/// A point of more than this share of a crowd's light is not part of it.
+const SHARE_OF_ONE: f64 = 1.0 / 500.0;
+
+/// The highest cells have at most this width, as a slope; and so many levels there are at most.
+const WIDEST: f64 = 0.4;
+const MOST_LEVELS: u32 = 7;
+
+/// Cells of the highest level in a row.
+const ACROSS: u32 = 8;
+
+/// Cells up to this wide need no depths, a slope: rays begin no nearer or farther from one side to the other.
+const WIDTH_WITHOUT_DEPTH: f64 = 0.016;
+
+/// Points of a crowd are at least so far from the eye's plane, in distances of the projection plane.
+const NEAREST: f64 = 1.2;
+
+/// Below this tolerance float32 has no digits to spare.
+const LEAST_TOLERANCE: f64 = 5e-5;
+
+/// The eye, the axes of the image, and a grid of pixels: a square whose highest cells are 8 in a row, each of
+/// `8 * 2^top` pixels a side.
+#[derive(Debug, Clone)]
+pub(crate) struct CrowdSight {
+    pub eye: DVec3,
+    pub right: DVec3,
+    pub down: DVec3,
+    pub forward: DVec3,
+    /// Slope at the corner of the grid, and from a pixel to the next.
+    pub first: [f64; 2],
+    pub step: [f64; 2],
+    pub near: f64,
+    pub ray_length: f64,
+    /// The highest level.
+    pub top: u32,
+    /// The lowest level whose cells need depths.
+    pub base: u32,
+    /// Where in the grid the image begins, pixels.
+    pub left: u32,
+    pub above: u32,
+}
+
+impl CrowdSight {
+    /// # Errors
+    /// [`Error::Unsupported`] for a camera, or an image, that has no such grid.
+    pub(crate) fn new(scene: &Scene) -> Result<Self> {
+        let refuse = |what: &str| Error::Unsupported(format!("crowds of points: {what}"));
+        let plane = scene.view_plane();
+        let (right, down) = (plane.column_step.normalize(), plane.row_step.normalize());
+        let leans = |a: DVec3, b: DVec3| a.dot(b).abs() > 1e-6;
+        if plane.is_parallel {
+            return Err(refuse("rays are parallel"));
+        }
+        if leans(right, down) || leans(right, plane.forward) || leans(down, plane.forward) {
+            return Err(refuse("the projection has a shear"));
+        }
+        let step = [plane.column_step, plane.row_step].map(|step| step.length() / plane.near);
+        let is_narrow = |top: &u32| f64::from(8_u32 << top) * step[0].max(step[1]) <= WIDEST;
+        let top = (0..=MOST_LEVELS).rev().find(is_narrow);
+        let top = top.ok_or_else(|| refuse("pixels are too wide"))?;
+        let width = (step[0] * step[1]).sqrt();
+        let is_deep = |level: &u32| f64::from(8_u32 << level) * width > WIDTH_WITHOUT_DEPTH;
+        let side = (ACROSS * 8) << top;
+        let begin = |size: u32| (side / 2).checked_sub(size.div_ceil(2)).map(|it| it & !7);
+        let corner = (begin(scene.image.width), begin(scene.image.height));
+        let (Some(left), Some(above)) = corner else {
+            return Err(refuse("the image is too wide"));
+        };
+        let first = |axis: DVec3, step: f64, begin: u32| {
+            plane.first_pixel.dot(axis) / plane.near - step * (f64::from(begin) + 0.5)
+        };
+        Ok(Self {
+            eye: plane.eye,
+            first: [first(right, step[0], left), first(down, step[1], above)],
+            right,
+            down,
+            forward: plane.forward,
+            step,
+            near: plane.near,
+            ray_length: plane.ray_length,
+            top,
+            base: (0..top).find(is_deep).unwrap_or(top),
+            left,
+            above,
+        })
+    }
+}
+
+impl Points {
+    /// Returns whether they may be part of a crowd.
+    fn may_be_crowd(&self) -> bool {
+        let is_point = self.radius == 0.0 && self.reach.is_none() && self.points.sizes().is_none();
+        is_point
+            && self.points.least_light() * self.coefficient >= 0.0
+            && self.coefficient >= 0.0
+            && (self.points.lights().is_some() || self.color.min_element() >= 0.0)
+    }
+
+    /// Returns whether all of them lie well behind the plane where rays begin: nearer ones are seen from many sides.
+    fn is_behind_plane(&self, sight: &CrowdSight) -> bool {
+        let (low, high) = self.points.bounds();
+        let (low, high) = (low - sight.eye, high - sight.eye);
+        let nearest = (low * sight.forward).min(high * sight.forward);
+        nearest.element_sum() >= NEAREST * sight.near
+    }
+
+    /// Returns the light of all, and of the brightest: of each the brightest channel.
+    fn total(&self) -> (f64, f64) {
+        let (sum, most) = self.points.total_light();
+        let of_all = match self.points.lights() {
+            Some(_) => self.coefficient,
+            None => self.coefficient * self.color.max_element(),
+        };
+        (of_all * sum, of_all * most)
+    }
+}
+
+impl Scene {
+    /// Returns the light of the brightest channel above which a point is not part of the crowd of a profile.
+    pub(crate) fn crowd_limit(&self, profile: Profile) -> f64 {
+        let crowd = self.points.iter().filter(|it| it.profile == profile);
+        SHARE_OF_ONE * crowd.map(|it| it.total().0).sum::<f64>()
+    }
+
+    /// Returns whether points may be drawn as crowds at all.
+    fn allows_crowds(&self) -> bool {
+        let integration = &self.integration;
+        let is_exact = matches!(integration.method, Method::Exact { tolerance, .. } if tolerance >= LEAST_TOLERANCE);
+        let is_plain = integration.softening == 0.0 && integration.reduction == Reduction::Sum;
+        let is_open = self.depth.is_none() && self.meshes.is_empty() && self.metaballs.is_empty();
+        let no_colliders = !self.colliders.iter().any(|it| it.visible);
+        let may = integration.crowd == Crowd::Auto && is_exact && is_plain && is_open;
+        // Means over wide pixels have no form here.
+        let is_seen = |it: CrowdSight| it.base > 0 || !integration.has_footprints();
+        may && no_colliders && self.fading().is_none() && CrowdSight::new(self).is_ok_and(is_seen)
+    }
+
+    /// Returns the scene with those of its points as sources of their own that are not part of a crowd: all, unless
+    /// `has_crowds` allows others and the scene does; `None`: there are none.
+    pub(crate) fn with_crowds(&self, has_crowds: bool) -> Option<Self> {
+        let has_crowds = has_crowds && self.allows_crowds();
+        let sight = has_crowds.then(|| CrowdSight::new(self).ok()).flatten();
+        let (crowd, apart): (Vec<&Points>, Vec<&Points>) = self.points.iter().partition(|it| {
+            let is_seen = |sight: &CrowdSight| it.is_behind_plane(sight);
+            it.may_be_crowd() && sight.as_ref().is_some_and(is_seen)
+        });
+        let mut spheres: Vec<Sphere> = Vec::new();
+        for points in apart {
+            spheres.extend((0..points.points.len()).map(|index| points.sphere(index)));
+        }
+        let is_all = spheres.is_empty();
+        let points: List<Points> = crowd.into_iter().cloned().collect();
+        let mut scene = Self {
+            points,
+            spheres: List::new(),
+            ..self.clone()
+        };
+        for profile in [Profile::Inverse, Profile::InverseSquare] {
+            let limit = scene.crowd_limit(profile);
+            let bright = |it: &&Points| it.profile == profile && it.total().1 > limit;
+            for points in scene.points.iter().filter(bright) {
+                let all = 0..points.points.len();
+                let bright = all.filter(|index| points.light(*index).max_element() > limit);
+                spheres.extend(bright.map(|index| points.sphere(index)));
+            }
+        }
+        if is_all && spheres.is_empty() {
+            return None;
+        }
+        scene.spheres = self.spheres.iter().cloned().chain(spheres).collect();
+        Some(scene)
+    }
+}
