@@ -45,20 +45,22 @@ __kernel void find_peaks(const CrowdView view, __global const uint *const restri
     }
 }
 
-// Sums the peaks of a cell's sources, and in .w has the greatest; and their levels.
+// Sums the peaks of a cell's sources, and in .w has the greatest; and their levels, in the place of which each source
+// then has the least square of a sine that its core is seen under.
 __kernel void sum_cells(const CrowdView view, __global const uint *const restrict starts,
-                        __global const CrowdSource *const restrict sources, __global float4 *const restrict peaks,
+                        __global CrowdSource *const restrict sources, __global float4 *const restrict peaks,
                         __global float4 *const restrict levels) {
     const uint cell = get_global_id(0);
     if (cell >= cells_below(&view, 1u))
         return;
     float4 peak = (float4)(0.0f), level = (float4)(0.0f);
     for (uint index = starts[cell]; index < starts[cell + 1u]; ++index) {
-        __global const CrowdSource *const source = sources + index;
+        __global CrowdSource *const source = sources + index;
         const float4 light = (float4)(source->red, source->green, source->blue, 0.0f);
         peak.xyz += source->peak * light.xyz;
         peak.w = max(peak.w, source->peak * max(light.x, max(light.y, light.z)));
         level.xyz += source->level * light.xyz;
+        source->level = max(view.floor2 * exp(-2.0f * source->t), 1e-24f);
     }
     peaks[cell] = peak, levels[cell] = level;
 }
@@ -79,6 +81,71 @@ __kernel void sum_quarters(const CrowdView view, const uint level, __global floa
     peaks[to] = peak, levels[to] = sum;
 }
 
+// What a cell lays on its nodes.
+typedef struct {
+    __global const uint *starts, *cells;
+    __global const CrowdSource *sources;
+    __global const float *numbers;
+    uint cell, level;
+} Laying;
+
+// Writes the weights of a cell's nodes across and down for a source.
+INLINE void weigh(const Laying *const laying, const uint index, const uint n, float *const across, float *const down) {
+    const float half_side = (float)(4u << laying->level);
+    const uint code = laying->cells[index];
+    __global const CrowdSource *const source = laying->sources + index;
+    const float column = 2.0f * half_side * (float)every_other(laying->cell) + half_side;
+    const float row = 2.0f * half_side * (float)every_other(laying->cell >> 1) + half_side;
+#ifdef MIDDLES_ONLY
+    const float right = 0.0f, below = 0.0f; // spoiled
+#else
+    const float right = ((float)(8u * every_other(code) + 4u) - column + source->x) / half_side;
+    const float below = ((float)(8u * every_other(code >> 1) + 4u) - row + source->y) / half_side;
+#endif
+    weights_at(laying->numbers, CELL_NODES, n, right, across);
+    weights_at(laying->numbers, CELL_NODES, n, below, down);
+}
+
+// Lays the peaks of a cell's sources on its nodes; n is a constant where it can be.
+INLINE void lay_flat(const CrowdView *const view, const Laying *const laying, const uint n, float4 *const laid) {
+    for (uint node = 0u; node < n * n; ++node)
+        laid[node] = (float4)(0.0f);
+    const uint shift = 2u * laying->level, end = laying->starts[(laying->cell + 1u) << shift];
+    for (uint index = laying->starts[laying->cell << shift]; index < end; ++index) {
+        __global const CrowdSource *const source = laying->sources + index;
+        float across[MOST_NODES], down[MOST_NODES];
+        weigh(laying, index, n, across, down);
+        const float4 light = source->peak * (float4)(source->red, source->green, source->blue, 0.0f);
+        for (uint j = 0u; j < n; ++j) {
+            const float4 in_row = down[j] * light;
+            for (uint i = 0u; i < n; ++i)
+                laid[j * n + i] += across[i] * in_row;
+        }
+    }
+}
+
+// Lays their light on its nodes in all depths.
+INLINE void lay_deep(const CrowdView *const view, const Laying *const laying, const uint n, float4 *const laid) {
+    const uint depths = view->depths, shift = 2u * laying->level;
+    for (uint node = 0u; node < n * n * depths; ++node)
+        laid[node] = (float4)(0.0f);
+    const float per_half_t = 1.0f / view->half_t;
+    const uint end = laying->starts[(laying->cell + 1u) << shift];
+    for (uint index = laying->starts[laying->cell << shift]; index < end; ++index) {
+        __global const CrowdSource *const source = laying->sources + index;
+        float across[MOST_NODES], down[MOST_NODES], deep[MOST_DEPTHS];
+        weigh(laying, index, n, across, down);
+        weights_at(laying->numbers, DEPTH_NODES, depths, (source->t - view->middle_t) * per_half_t, deep);
+        const float4 light = (float4)(source->red, source->green, source->blue, 0.0f);
+        for (uint q = 0u; q < depths; ++q)
+            for (uint j = 0u; j < n; ++j) {
+                const float4 in_row = deep[q] * down[j] * light;
+                for (uint i = 0u; i < n; ++i)
+                    laid[(q * n + j) * n + i] += across[i] * in_row;
+            }
+    }
+}
+
 // Lays the light of a cell's sources on its nodes. At levels without depths it is their peaks, where `is_wanted` says
 // that tiles look at the cell that it is a quarter of.
 __kernel void lay_sources(const CrowdView view, const uint level, __global const uint *const restrict starts,
@@ -94,38 +161,15 @@ __kernel void lay_sources(const CrowdView view, const uint level, __global const
         return;
     const uint n = view.nodes, depths = has_depths ? view.depths : 1u;
     float4 laid[MOST_NODES * MOST_NODES * MOST_DEPTHS];
-    for (uint node = 0u; node < n * n * depths; ++node)
-        laid[node] = (float4)(0.0f);
-    const float half_side = (float)(4u << level);
-    const float column = (2.0f * (float)every_other(cell) + 1.0f) * half_side;
-    const float row = (2.0f * (float)every_other(cell >> 1) + 1.0f) * half_side;
-    float across_x[MOST_NODES], across_y[MOST_NODES], deep[MOST_DEPTHS];
-    for (uint index = begin; index < end; ++index) {
-        __global const CrowdSource *const source = sources + index;
-        const uint code = cells[index];
-        const float x = (float)(8u * every_other(code) + 4u) - column + source->x;
-        const float y = (float)(8u * every_other(code >> 1) + 4u) - row + source->y;
-#ifdef MIDDLES_ONLY
-        const float right = 0.0f, below = 0.0f; // spoiled
-#else
-        const float right = x / half_side, below = y / half_side;
-#endif
-        weights_at(numbers, CELL_NODES, n, right, across_x);
-        weights_at(numbers, CELL_NODES, n, below, across_y);
-        float4 light = (float4)(source->red, source->green, source->blue, 0.0f);
-        deep[0] = 1.0f;
-        if (has_depths)
-            weights_at(numbers, DEPTH_NODES, depths, (source->t - view.middle_t) / view.half_t, deep);
-        else
-            light *= source->peak;
-        uint node = 0u;
-        for (uint q = 0u; q < depths; ++q)
-            for (uint j = 0u; j < n; ++j) {
-                const float4 in_row = deep[q] * across_y[j] * light;
-                for (uint i = 0u; i < n; ++i, ++node)
-                    laid[node] += across_x[i] * in_row;
-            }
-    }
+    const Laying laying = {starts, cells, sources, numbers, cell, level};
+    if (!has_depths)
+        n == 3u   ? lay_flat(&view, &laying, 3u, laid)
+        : n == 4u ? lay_flat(&view, &laying, 4u, laid)
+                  : lay_flat(&view, &laying, n, laid);
+    else
+        n == 3u   ? lay_deep(&view, &laying, 3u, laid)
+        : n == 4u ? lay_deep(&view, &laying, 4u, laid)
+                  : lay_deep(&view, &laying, n, laid);
     const uint from = has_depths ? (cells_below(&view, level) - cells_below(&view, view.base) + cell) * n * n * depths
                                  : (cells_below(&view, level) + cell) * n * n;
     for (uint node = 0u; node < n * n * depths; ++node)

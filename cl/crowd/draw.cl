@@ -34,6 +34,15 @@ INLINE floatv mean_core(const CrowdView *const view, const floatv right, const f
     return mean;
 }
 
+// Returns how far right of the middle of a tile of 8 pixels, and below it, the pixels of a vector are.
+INLINE floatv right_of(const uint vector) {
+    return to_floatv((vector * LANES + LANE_NUMBERS) & 7u) - 3.5f;
+}
+
+INLINE floatv down_of(const uint vector) {
+    return to_floatv((vector * LANES + LANE_NUMBERS) >> 3) - 3.5f;
+}
+
 // Adds a source next to a tile of 8 pixels, x and y from the middle of the tile, to its pixels.
 INLINE void add_near(const CrowdView *const view, __global const CrowdSource *const source, const float x,
                      const float y, const float column, const float row, float3v *const light, float3v *const sum) {
@@ -43,18 +52,28 @@ INLINE void add_near(const CrowdView *const view, __global const CrowdSource *co
     const float south = view->step_v * view->step_v * fma(u, u, 1.0f) * per2;
     const float both = -2.0f * view->step_u * view->step_v * u * v * per2;
     const float4 peak = source->peak * (float4)(source->red, source->green, source->blue, 0.0f);
-    const float width = sqrt(east), height = sqrt(south);
-    const float red = peak.x, green = peak.y, blue = peak.z;
-    const float z2 = exp(2.0f * source->t), least = max(view->floor2 / z2 * per2, 1e-24f);
-    for (uint vector = 0u; vector < VECTORS; ++vector) {
-        const uintv place = vector * LANES + LANE_NUMBERS;
-        const floatv right = to_floatv(place & 7u) - (3.5f + x), down = to_floatv(place >> 3) - (3.5f + y);
-        const floatv q = fma(right, fma(splat(east), right, both * down), south * down * down);
-        const floatv core = view->thickness > 0.0f ? mean_core(view, right, down, width, height, q, least)
-                                                   : core_of(view, max(q, least));
-        light[vector].x = fma(core, splat(red), light[vector].x);
-        light[vector].y = fma(core, splat(green), light[vector].y);
-        light[vector].z = fma(core, splat(blue), light[vector].z);
+    const float least = source->level;
+    if (view->thickness > 0.0f) {
+        const float width = sqrt(east), height = sqrt(south);
+        for (uint vector = 0u; vector < VECTORS; ++vector) {
+            const floatv right = right_of(vector) - x, down = down_of(vector) - y;
+            const floatv q = fma(right, fma(splat(east), right, both * down), south * down * down);
+            add_light(&light[vector], mean_core(view, right, down, width, height, q, least), peak);
+        }
+    } else if (view->is_square) {
+#pragma unroll
+        for (uint vector = 0u; vector < VECTORS; ++vector) {
+            const floatv right = right_of(vector) - x, down = down_of(vector) - y;
+            const floatv q = fma(right, fma(splat(east), right, both * down), south * down * down);
+            add_light(&light[vector], twice_inverse_sqrt_(max(q, least)), 0.5f * peak);
+        }
+    } else {
+#pragma unroll
+        for (uint vector = 0u; vector < VECTORS; ++vector) {
+            const floatv right = right_of(vector) - x, down = down_of(vector) - y;
+            const floatv q = fma(right, fma(splat(east), right, both * down), south * down * down);
+            add_light(&light[vector], binary_logarithm(max(q, least)), -LN_2 * peak);
+        }
     }
     add_light(sum, splat(1.0f), peak);
 }

@@ -4,8 +4,8 @@
 #include "types.h"
 
 // Writes the weights of a place for n nodes.
-void weights_at(__global const float *const numbers, const uint nodes, const uint n, const float x,
-                float *const weights) {
+INLINE void weights_at(__global const float *const numbers, const uint nodes, const uint n, const float x,
+                       float *const weights) {
     float product = 1.0f;
     for (uint i = 0u; i < n; ++i) {
         weights[i] = product * numbers[FACTORS + nodes + i];

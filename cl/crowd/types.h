@@ -39,7 +39,8 @@ typedef struct {
 CHECK_SIZE(CrowdView, SIZEOF_CROWDVIEW);
 
 // A source in the grid: its place from the middle of its cell of 8 pixels, ln z, and light; along a ray that passes it
-// at a small angle it gives `peak` times core_of(angle), plus `level`.
+// at a small angle it gives `peak` times core_of(angle), plus `level`; once cells are summed, `level` is the least
+// square of a sine.
 typedef struct {
     float x, y, t;
     float red, green, blue;

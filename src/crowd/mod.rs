@@ -165,7 +165,8 @@ impl Crowd {
             return Ok(());
         };
         let (view, buffers) = (&plan.view, &self.buffers);
-        let group = match self.options.lanes.unwrap_or(compute.device().lanes) {
+        let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
+        let group = match lanes {
             1 => GROUP,
             _ => 1,
         };
@@ -173,6 +174,7 @@ impl Crowd {
             compute,
             view,
             buffers,
+            lanes,
             group,
             under_way: &mut self.under_way,
         };
@@ -208,7 +210,9 @@ impl Crowd {
         let mut outcome = Ok(());
         for event in self.under_way.drain(..) {
             match run_time(compute, &event) {
-                Ok(time) => self.cost.kernel += time,
+                Ok(time) => {
+                    self.cost.kernel += time;
+                }
                 Err(error) => outcome = outcome.and(Err(error)),
             }
             self.cost.launches += 1;
@@ -231,6 +235,7 @@ struct Enqueue<'a> {
     compute: &'a Compute,
     view: &'a CrowdView,
     buffers: &'a Buffers,
+    lanes: u32,
     group: usize,
     under_way: &'a mut Vec<Handle<Event>>,
 }
@@ -257,10 +262,6 @@ impl Enqueue<'_> {
     fn light_tiles(&mut self, kernels: &Kernels) -> Result<()> {
         let (view, buffers) = (self.view, self.buffers);
         let cells = |level: u32| 64_usize << (2 * (view.top - level));
-        let lanes = match self.group {
-            1 => 16,
-            _ => 1,
-        };
         let peaks = ("peaks", buffers.peaks.argument());
         let levels = ("levels", buffers.levels.argument());
         let starts = ("starts", buffers.starts.argument());
@@ -272,7 +273,7 @@ impl Enqueue<'_> {
         let is_wanted = ("is_wanted", buffers.is_wanted.argument());
         let all = view.cells_below(view.top + 1);
         self.launch(&kernels.clear, &[counts, is_wanted], all.max(COUNTS))?;
-        let items = (view.sources as usize).div_ceil(if lanes == 16 { 1 } else { lanes });
+        let items = (view.sources as usize).div_ceil(self.lanes as usize);
         self.launch(&kernels.find_peaks, &[codes, sources], items)?;
         self.launch(
             &kernels.sum_cells,
@@ -280,8 +281,12 @@ impl Enqueue<'_> {
             cells(0),
         )?;
         for level in 1..=view.top {
-            let level: (&str, &dyn Argument) = ("level", &level);
-            self.launch(&kernels.sum_quarters, &[level, peaks, levels], cells(1))?;
+            let level_argument = ("level", &level as &dyn Argument);
+            self.launch(
+                &kernels.sum_quarters,
+                &[level_argument, peaks, levels],
+                cells(level),
+            )?;
         }
         let base = ("level", &view.base as &dyn Argument);
         let laid = [base, starts, codes, sources, numbers, is_wanted, nodes];
