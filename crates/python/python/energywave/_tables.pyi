@@ -376,6 +376,7 @@ class Image(Table):
 
 class Integration(Table):
     antialias: Literal["footprint", "none"]
+    crowd: Literal["auto", "never"]
     divisions: int
     hidden_surfaces: bool
     measure: Literal["parameter", "length"]
@@ -392,6 +393,7 @@ class Integration(Table):
         self,
         *,
         antialias: Optional[Literal["footprint", "none"]] = None,
+        crowd: Optional[Literal["auto", "never"]] = None,
         divisions: Optional[int] = None,
         hidden_surfaces: Optional[bool] = None,
         measure: Optional[Literal["parameter", "length"]] = None,
@@ -612,6 +614,30 @@ class Path(Table):
         radius: Optional[_Number] = None,
         reach: Optional[_Number] = None,
         shape: Optional[Literal["polyline", "spline", "quadratic", "cubic"]] = None,
+    ) -> None: ...
+
+class Points(Table):
+    coefficient: _Number
+    coefficients: _Values
+    color: Union[_Values, str]
+    colors: Union[_Values, str]
+    file: Union[str, "PathLike[str]"]
+    positions: _Values
+    profile: Literal["inverse", "inverse-square", "inverse-cube", "gaussian", "smeared", "convolution"]
+    radius: _Number
+    reach: _Number
+    def __init__(
+        self,
+        *,
+        coefficient: Optional[_Number] = None,
+        coefficients: Optional[_Values] = None,
+        color: Optional[Union[_Values, str]] = None,
+        colors: Optional[Union[_Values, str]] = None,
+        file: Optional[Union[str, "PathLike[str]"]] = None,
+        positions: Optional[_Values] = None,
+        profile: Optional[Literal["inverse", "inverse-square", "inverse-cube", "gaussian", "smeared", "convolution"]] = None,
+        radius: Optional[_Number] = None,
+        reach: Optional[_Number] = None,
     ) -> None: ...
 
 class Repeat(Table):
@@ -880,4 +906,4 @@ class Wave(Table):
         threads: Optional[int] = None,
     ) -> None: ...
 
-__all__ = ["Absorption", "Acceleration", "Arc", "Beam", "Bloom", "Camera", "Collider", "ColliderBox", "ColliderPlane", "ColliderSphere", "Control", "Curve", "Cylinder", "Dashes", "Decay", "Depth", "Display", "Group", "Image", "Integration", "Lattice", "Layers", "LightBall", "Lighting", "Mesh", "Metaballs", "Mixture", "Noise", "Particles", "Path", "Repeat", "Rotate", "Segment", "Simulation", "Sphere", "Sun", "Time", "Torus", "Track", "Volume", "Wave"]
+__all__ = ["Absorption", "Acceleration", "Arc", "Beam", "Bloom", "Camera", "Collider", "ColliderBox", "ColliderPlane", "ColliderSphere", "Control", "Curve", "Cylinder", "Dashes", "Decay", "Depth", "Display", "Group", "Image", "Integration", "Lattice", "Layers", "LightBall", "Lighting", "Mesh", "Metaballs", "Mixture", "Noise", "Particles", "Path", "Points", "Repeat", "Rotate", "Segment", "Simulation", "Sphere", "Sun", "Time", "Torus", "Track", "Volume", "Wave"]
