@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 pub use crate::bloom::{BloomStep, Spreader};
+pub use crate::crowd::pack::STRUCTS as CROWD_STRUCTS;
 pub use crate::glow::pack::STRUCTS as GLOW_STRUCTS;
 pub use crate::light::pack::STRUCTS as LIGHT_STRUCTS;
 pub use crate::mesh::pack::STRUCTS as MESH_STRUCTS;
@@ -26,6 +27,7 @@ pub use crate::texture::pack::STRUCTS as TEXTURE_STRUCTS;
 pub use crate::wave::{Rule, Split, TILE_SHARES, Wave, pack};
 
 use crate::bloom;
+use crate::crowd;
 use crate::error::{Error, Result};
 use crate::glow;
 use crate::mesh;
@@ -237,6 +239,19 @@ pub fn build_glow_text(
     options: &RendererOptions,
 ) -> Result<Program> {
     glow::build_text(compute, name, text, options)
+}
+
+/// Builds a text that may include files of `cl/crowd/`, as [`build_text`] does with those of the wave.
+///
+/// # Errors
+/// As there.
+pub fn build_crowd_text(
+    compute: &Compute,
+    name: &str,
+    text: &str,
+    options: &RendererOptions,
+) -> Result<Program> {
+    crowd::build_text(compute, name, text, options)
 }
 
 /// Builds a text that may include files of `cl/texture/`, as [`build_text`] does with those of the wave.

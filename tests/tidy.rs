@@ -66,8 +66,8 @@ const LAYERS: [(&str, &[&str]); 19] = [
     ("opencl", &[]),
     ("bloom", &["image", "opencl"]),
     ("glow", &["image", "opencl", "scene"]),
-    ("crowd", &["image", "opencl", "scene"]),
-    // The self-tests of light and of volumes compare with the reference.
+    // The self-tests of crowds, of light and of volumes compare with the reference.
+    ("crowd", &["image", "opencl", "scene", "reference"]),
     ("mesh", &["image", "opencl", "scene", "light", "reference"]),
     ("metaball", &["image", "opencl", "scene"]),
     // One function is the renderer's, on the best device.
@@ -121,6 +121,7 @@ const LAYERS: [(&str, &[&str]); 19] = [
             "opencl",
             "bloom",
             "glow",
+            "crowd",
             "light",
             "mesh",
             "texture",

@@ -78,18 +78,29 @@ INLINE void add_near(const CrowdView *const view, __global const CrowdSource *co
     add_light(sum, splat(1.0f), peak);
 }
 
-// The same in closed form, where pixels are so wide that there is no other.
+// The same by the whole closed form, where pixels are so wide that a source's strength changes from one to the next. In
+// a pixel that is a mean, a core is rounded off in the closed form, and what is missing comes from the other.
 INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *const source, const float x,
                       const float y, const float column, const float row, float3v *const light) {
     const float u = slope_u(view, column + x), v = slope_v(view, row + y), z = exp(source->t);
+    const float stretch2 = fma(u, u, fma(v, v, 1.0f)), per2 = 1.0f / stretch2;
+    const float width = view->step_u * sqrt(fma(v, v, 1.0f) * per2),
+                height = view->step_v * sqrt(fma(u, u, 1.0f) * per2);
+    const float round2 = view->thickness > 0.0f ? 0.25f * width * height : 0.0f;
     const float4 own = (float4)(source->red, source->green, source->blue, 0.0f);
     for (uint vector = 0u; vector < VECTORS; ++vector) {
-        const uintv place = vector * LANES + LANE_NUMBERS;
-        const floatv right = to_floatv(place & 7u) - 3.5f, down = to_floatv(place >> 3) - 3.5f;
+        const floatv right = right_of(vector), down = down_of(vector);
         const Rays rays = rays_through(view, fma(splat(view->step_u), right, splat(slope_u(view, column))),
                                        fma(splat(view->step_v), down, splat(slope_v(view, row))));
         const floatv beside2 = cross2(view->step_u * (right - x), view->step_v * (down - y), u, v);
-        add_light(&light[vector], light_of_place(view, &rays, u, v, z, beside2, 0.0f), own);
+        const floatv q = beside2 * per2, rounded = max(q, round2);
+        add_light(&light[vector], light_of_place(view, &rays, u, v, z, rounded * stretch2, 0.0f), own);
+        const intv is_core = q < 9.0f * width * height;
+        if (view->thickness > 0.0f && any_lane(is_core)) {
+            const floatv mean = mean_core(view, right - x, down - y, width, height, q, source->level);
+            const floatv more = (mean - core_of(view, rounded)) * (view->is_square ? rays.stretch : splat(1.0f));
+            add_light(&light[vector], select(splat(0.0f), more, is_core), source->peak * own);
+        }
     }
 }
 
@@ -102,9 +113,10 @@ INLINE void add_around(const CrowdView *const view, __global const uint *const s
     float3v near[VECTORS], sum = uniform3((float4)(0.0f)), level = sum;
     for (uint vector = 0u; vector < VECTORS; ++vector)
         near[vector] = uniform3((float4)(0.0f));
+    const uint block = BLOCK(view);
     uint looked_at = 0u;
-    for (uint y = max(row, (uint)BLOCK) - BLOCK; y < min(row + BLOCK + 1u, across); ++y)
-        for (uint x = max(column, (uint)BLOCK) - BLOCK; x < min(column + BLOCK + 1u, across); ++x) {
+    for (uint y = max(row, block) - block; y < min(row + block + 1u, across); ++y)
+        for (uint x = max(column, block) - block; x < min(column + block + 1u, across); ++x) {
             const uint cell = code_of(x, y);
             const float from_x = 8.0f * ((float)x - (float)column), from_y = 8.0f * ((float)y - (float)row);
             for (uint index = starts[cell]; index < starts[cell + 1u]; ++index) {

@@ -13,7 +13,7 @@
 #define SOFTENING 0.35f
 
 #ifndef BLOCK // a test spoils it
-#define BLOCK 1
+#define BLOCK(view) (view)->block
 #endif
 
 // How many times misplaced light may be larger than its mean.
@@ -151,8 +151,9 @@ INLINE bool is_enough(const CrowdView *const view, const Cells *const cells, con
 #endif
     const uint across = cells_across(view, level), first = cells_below(view, level);
     float4 peak = (float4)(0.0f);
-    for (uint y = max(row, 1u) - 1u; y < min(row + 2u, across); ++y)
-        for (uint x = max(column, 1u) - 1u; x < min(column + 2u, across); ++x) {
+    const uint block = max(BLOCK(view), 1u);
+    for (uint y = max(row, block) - block; y < min(row + block + 1u, across); ++y)
+        for (uint x = max(column, block) - block; x < min(column + block + 1u, across); ++x) {
             const float4 it = cells->peaks[first + code_of(x, y)];
             peak.xyz += it.xyz;
             peak.w = max(peak.w, it.w);
@@ -161,7 +162,8 @@ INLINE bool is_enough(const CrowdView *const view, const Cells *const cells, con
     const float spread = CAUTION * (view->is_square ? 1.0f / angle : 1.0f);
     const float of_one = view->is_square ? 20.0f / angle : -2.0f * log(0.05f * angle);
     const float most = max(least.x, max(least.y, least.z));
-    return all(isless(spread * peak.xyz, least.xyz) | (peak.xyz == 0.0f)) && peak.w * of_one <= 10.0f * most;
+    const float share = view->is_square ? 10.0f : 1.0f;
+    return all(isless(spread * peak.xyz, least.xyz) | (peak.xyz == 0.0f)) && peak.w * of_one <= share * most;
 }
 
 __kernel void light_tiles(const CrowdView view, const uint level, const uint first_slot, const uint next_slot,
@@ -201,14 +203,15 @@ __kernel void light_tiles(const CrowdView view, const uint level, const uint fir
 
         // What lies around the parent, and not around the tile itself.
         const bool is_top = level == view.top;
-        const uint west = is_top ? 0u : (column & ~1u) - min(column & ~1u, 2u);
-        const uint north = is_top ? 0u : (row & ~1u) - min(row & ~1u, 2u);
-        const uint east = is_top ? across : min((column & ~1u) + 4u, across);
-        const uint south = is_top ? across : min((row & ~1u) + 4u, across);
+        const uint block = BLOCK(&view), around = 2u * view.block;
+        const uint west = is_top ? 0u : (column & ~1u) - min(column & ~1u, around);
+        const uint north = is_top ? 0u : (row & ~1u) - min(row & ~1u, around);
+        const uint east = is_top ? across : min((column & ~1u) + around + 2u, across);
+        const uint south = is_top ? across : min((row & ~1u) + around + 2u, across);
         uint looked_at = 0u;
         for (uint y = north; y < south; ++y)
             for (uint x = west; x < east; ++x) {
-                const bool is_near = x + BLOCK >= column && x <= column + BLOCK && y + BLOCK >= row && y <= row + BLOCK;
+                const bool is_near = x + block >= column && x <= column + block && y + block >= row && y <= row + block;
                 const uint cell = code_of(x, y);
                 if (is_near || is_empty_cell(&cells, level, cell))
                     continue;
@@ -224,8 +227,8 @@ __kernel void light_tiles(const CrowdView view, const uint level, const uint fir
         const bool ends = is_enough(&view, &cells, level, column, row, angle, &tile);
         if (ends) {
 #ifndef NO_BLOCK_LIGHT
-            for (uint y = max(row, (uint)BLOCK) - BLOCK; y < min(row + BLOCK + 1u, across); ++y)
-                for (uint x = max(column, (uint)BLOCK) - BLOCK; x < min(column + BLOCK + 1u, across); ++x) {
+            for (uint y = max(row, block) - block; y < min(row + block + 1u, across); ++y)
+                for (uint x = max(column, block) - block; x < min(column + block + 1u, across); ++x) {
                     const uint cell = code_of(x, y);
                     if (is_empty_cell(&cells, level, cell))
                         continue;
@@ -262,8 +265,8 @@ __kernel void light_tiles(const CrowdView view, const uint level, const uint fir
             tiles[next].code = 4u * code + quarter, tiles[next].parent = slot;
         }
         if (level <= view.base)
-            for (uint y = max(row, 1u) - 1u; y < min(row + 2u, across); ++y)
-                for (uint x = max(column, 1u) - 1u; x < min(column + 2u, across); ++x)
+            for (uint y = max(row, view.block) - view.block; y < min(row + view.block + 1u, across); ++y)
+                for (uint x = max(column, view.block) - view.block; x < min(column + view.block + 1u, across); ++x)
                     atomic_or(is_wanted + cells_below(&view, level) + code_of(x, y), 1u);
     }
 }

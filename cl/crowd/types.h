@@ -34,7 +34,9 @@ typedef struct {
     uint tile_columns;  // tiles of 8 pixels in a row of the image
     uint has_near_form; // sources next to a pixel have the form of one that is near
     float thickness;    // of a core as pixels see it that are means over their squares, a slope; 0 where they are not
-    uint padding[3];
+    uint across;        // cells of the highest level in a row, a power of 2
+    uint block;         // cells on each side of a tile that belong to what lies around it
+    uint padding;
 } CrowdView;
 CHECK_SIZE(CrowdView, SIZEOF_CROWDVIEW);
 
@@ -91,11 +93,11 @@ uint code_of(const uint column, const uint row) {
 
 // Returns how many cells all levels below one have.
 uint cells_below(const CrowdView *const view, const uint level) {
-    const uint all = 64u << (2u * view->top);
+    const uint all = view->across * view->across << (2u * view->top);
     return level == 0u ? 0u : (4u * all - (4u * all >> (2u * level))) / 3u;
 }
 
 // Returns cells of a level in a row.
 uint cells_across(const CrowdView *const view, const uint level) {
-    return 8u << (view->top - level);
+    return view->across << (view->top - level);
 }

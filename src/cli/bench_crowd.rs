@@ -2,8 +2,10 @@
 
 use energywave::glam::DVec3;
 use energywave::image::ImageSize;
-use energywave::scene::{Camera, Decay, PointList, Points, Profile};
-use energywave::{Error, Scene};
+use energywave::papers::turned;
+use energywave::reference::light_of_points;
+use energywave::scene::{Antialias, Camera, Decay, PointList, Points, Profile, Ray};
+use energywave::{Error, RadianceImage, Scene};
 use serde::Serialize;
 
 use super::bench::{prepare, save, time};
@@ -13,6 +15,9 @@ use super::{Outcome, names, print};
 
 /// How many points.
 const COUNTS: [u32; 4] = [1000, 10_000, 100_000, 1_000_000];
+
+/// So many pixels are compared with the float64 sum over all points.
+const COMPARED: usize = 2000;
 
 /// A number of points, drawn with one profile.
 #[derive(Serialize)]
@@ -27,6 +32,12 @@ struct CrowdCell {
     kernel_ms: f64,
     /// Integrals of a frame: rays and points, or nodes that stand for points.
     evaluations: u64,
+    /// Relative errors of pixels, of the worst colour of each.
+    median_error: f64,
+    error_of_999_in_1000: f64,
+    greatest_error: f64,
+    /// How the time of a frame grows from a tenth of the points: with this power of their number.
+    exponent: Option<f64>,
     frame: u32,
     device: String,
     #[serde(flatten)]
@@ -52,6 +63,10 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
                 &speed,
                 &scene,
             )?;
+            let errors = errors(&turned(&scene, speed.frame), &speed.image);
+            let spread: Spread = speed.times.into();
+            let before = cells.last().filter(|cell| cell.profile == profile);
+            let exponent = before.map(|it| (spread.median_ms / it.spread.median_ms).log10());
             let cell = CrowdCell {
                 table: "crowd",
                 points,
@@ -62,9 +77,13 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
                 fps: speed.fps,
                 kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
                 evaluations: speed.cost.integrals,
+                median_error: errors[COMPARED / 2],
+                error_of_999_in_1000: errors[COMPARED * 999 / 1000],
+                greatest_error: errors[COMPARED - 1],
+                exponent,
                 frame: speed.frame,
                 device: names(&devices),
-                spread: speed.times.into(),
+                spread,
                 origin: origin.clone(),
             };
             if arguments.data.is_text() {
@@ -103,17 +122,45 @@ fn scene(count: u32, profile: Profile) -> Result<Scene, Error> {
         width: 1920,
         height: 1080,
     };
+    // Single rays, which have a truth.
+    scene.integration.antialias = Antialias::None;
     scene.decay = Some(Decay::new(0.1, 0.1));
     scene.points.push(points);
     Ok(scene)
 }
 
+/// Returns the sorted errors of pixels that are spread evenly over a picture.
+fn errors(scene: &Scene, image: &RadianceImage) -> Vec<f64> {
+    let (plane, width) = (scene.view_plane(), scene.image.width);
+    // Steps that meet every column.
+    let pixel = |k: usize| (k * 1_000_003) % scene.image.pixels();
+    let pixels: Vec<usize> = (0..COMPARED).map(pixel).collect();
+    let ray = |index: &usize| plane.ray(*index as u32 % width, *index as u32 / width);
+    let rays: Vec<Ray> = pixels.iter().map(ray).collect();
+    let lights = light_of_points(scene, &rays);
+    let error = |(index, light): (&usize, &[f64; 3])| {
+        let found = &image.as_slice()[4 * index..];
+        let off = |k: usize| (f64::from(found[k]) / light[k] - 1.0).abs();
+        off(0).max(off(1)).max(off(2))
+    };
+    let mut errors: Vec<f64> = pixels.iter().zip(&lights).map(error).collect();
+    errors.sort_by(f64::total_cmp);
+    errors
+}
+
 fn print_cell(cell: &CrowdCell, name: &str, is_first: bool) -> Outcome {
     if is_first {
-        print("   points profile              fps  kernel ms   evaluations\n")?;
+        print(
+            "   points profile              fps  median ms   evaluations   99.9 % within  exponent\n",
+        )?;
     }
     print(&format!(
-        "{:>9} {name:<14} {:>9.2} {:>10.3} {:>13}\n",
-        cell.points, cell.fps, cell.kernel_ms, cell.evaluations
+        "{:>9} {name:<14} {:>9.2} {:>10.1} {:>13} {:>15.1e} {:>9}\n",
+        cell.points,
+        cell.fps,
+        cell.spread.median_ms,
+        cell.evaluations,
+        cell.error_of_999_in_1000,
+        cell.exponent.map_or(String::new(), |it| format!("{it:.2}"))
     ))
 }

@@ -73,10 +73,10 @@ impl Origin {
 /// How often a frame was timed, and what that took, milliseconds.
 #[derive(Debug, Serialize)]
 pub struct Spread {
-    repetitions: u32,
-    median_ms: f64,
-    least_ms: f64,
-    greatest_ms: f64,
+    pub repetitions: u32,
+    pub median_ms: f64,
+    pub least_ms: f64,
+    pub greatest_ms: f64,
 }
 
 impl From<Times> for Spread {

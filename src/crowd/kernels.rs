@@ -49,3 +49,14 @@ fn definitions(format: FilmFormat) -> String {
     let sizes = sizes.map(|it| format!(" -D SIZEOF_{}={}", it.name.to_uppercase(), it.size));
     sizes.collect::<String>() + format.definitions()
 }
+
+/// Builds a text that includes files of `cl/crowd/`, for tests; `name` stands for it in the compiler's log.
+pub(crate) fn build_text(
+    compute: &Compute,
+    name: &str,
+    text: &str,
+    options: &RendererOptions,
+) -> Result<Program> {
+    let text = sources().resolve_text(name, text);
+    Program::build(compute, text, &definitions(FilmFormat::Floats), options)
+}

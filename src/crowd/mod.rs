@@ -5,7 +5,8 @@
 
 mod buffers;
 mod kernels;
-mod pack;
+pub(crate) mod pack;
+mod self_test;
 mod sort;
 mod sources;
 
@@ -24,7 +25,9 @@ use crate::opencl::{
 use crate::scene::{Camera, CrowdSight, Integration, List, Points, Profile, Scene};
 use buffers::{Buffers, NODES_OF_TILE};
 use kernels::Kernels;
+pub(crate) use kernels::build_text;
 use pack::{CrowdView, Sorted};
+use self_test::self_test;
 use sort::Sorter;
 
 /// Work-items in a group of a GPU. On a CPU groups are single: neighbours may differ much in their work.
@@ -101,6 +104,7 @@ impl Crowd {
     ///
     /// # Errors
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
+    /// [`Error::SelfTest`](crate::Error::SelfTest),
     /// [`Error::Device`](crate::Error::Device); [`Error::Unsupported`](crate::Error::Unsupported) for a camera whose
     /// image has no grid.
     pub(crate) fn plan(
@@ -115,7 +119,8 @@ impl Crowd {
             return Ok(None);
         }
         if let Entry::Vacant(entry) = self.kernels.entry(format) {
-            let (kernels, _) = kernels::build(compute, format, &self.options)?;
+            let (kernels, program) = kernels::build(compute, format, &self.options)?;
+            let kernels = self_test(compute, format, &self.options, (kernels, &program))?;
             entry.insert(kernels);
         }
         let sight = CrowdSight::new(scene)?;
@@ -261,7 +266,7 @@ impl Enqueue<'_> {
     /// Enqueues all that comes before pixels.
     fn light_tiles(&mut self, kernels: &Kernels) -> Result<()> {
         let (view, buffers) = (self.view, self.buffers);
-        let cells = |level: u32| 64_usize << (2 * (view.top - level));
+        let cells = |level: u32| view.cells(level);
         let peaks = ("peaks", buffers.peaks.argument());
         let levels = ("levels", buffers.levels.argument());
         let starts = ("starts", buffers.starts.argument());

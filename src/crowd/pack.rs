@@ -37,9 +37,9 @@ device_struct! {
         tile_columns: u32 = 104,
         has_near_form: u32 = 108,
         thickness: f32 = 112,
-        padding0: u32 = 116,
-        padding1: u32 = 120,
-        padding2: u32 = 124,
+        across: u32 = 116,
+        block: u32 = 120,
+        padding: u32 = 124,
     }
 }
 
@@ -79,6 +79,16 @@ const MOST_DEPTHS: usize = 16;
 /// A pixel that is a mean over its square sees a core as so thick, in pixels: that of 1/d^2 would have no end.
 const LEAST_THICKNESS: f64 = 1.0 / 64.0;
 
+/// Fewer cells of 8 pixels than this are few.
+const FEW_CELLS: u32 = 1000;
+
+/// Of so many sources the form of near ones does up to a greater width of what is around a tile, a slope.
+const MANY: u32 = 50_000;
+const WIDEST_OF_MANY: f64 = 0.16;
+
+/// What a tile errs at most of the light of cells of 1/d^2 that only its neighbours part from it.
+const LEAST_NEXT_TO_CELLS: f64 = 5e-4;
+
 /// Places in the table of numbers.
 const CELL_NODES: usize = 8;
 const DEPTH_NODES: usize = 16;
@@ -92,6 +102,8 @@ const NUMBERS: usize = 112;
 pub(super) struct Sorted {
     pub sources: u32,
     pub rest: u32,
+    /// How many cells of 8 pixels have a source.
+    pub occupied: u32,
     /// The least and the greatest ln z of sources in the grid.
     pub t: [f64; 2],
 }
@@ -114,17 +126,26 @@ pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<C
         (None, None) => 1.0,
     };
     let tolerance = scene.integration.method.tolerance();
+    let pixel = (sight.step[0] * sight.step[1]).sqrt();
     let thickness = match scene.integration.has_footprints() {
-        true => LEAST_THICKNESS * (sight.step[0] * sight.step[1]).sqrt(),
+        true => LEAST_THICKNESS * pixel,
         false => 0.0,
     };
     let is_square = profile == Profile::InverseSquare;
+    let [low, high] = sorted.t;
     let (nodes, more) = match tolerance {
         t if t >= 7e-4 => (3, 0),
         t if t >= 2e-4 => (4, 1),
         _ => (5, 2),
     };
-    let [low, high] = sorted.t;
+    // Errors of many cells cancel, those of few add up; more nodes cost little there. 1/d^2 needs more room, too.
+    let is_concentrated = sorted.occupied < FEW_CELLS;
+    let is_tight = is_square && tolerance < LEAST_NEXT_TO_CELLS;
+    let block = 1 + u32::from(is_tight || is_square && is_concentrated);
+    let nodes = nodes + u32::from(is_square) + u32::from(is_concentrated);
+    // Of many points those around a tile are a small part of its light.
+    let is_dense =
+        sorted.sources >= MANY && 8.0 * pixel * f64::from(2 * block + 1) < WIDEST_OF_MANY;
     let depths = (2.5 + 2.0 * (high - low)).ceil() as u32 + more + u32::from(is_square);
     let tiles = |level: u32, offset: u32, size: u32| {
         let side = 8 << level;
@@ -147,10 +168,10 @@ pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<C
         half_t: (0.5 * (high - low)).max(1e-3) as f32 * 1.0001,
         floor2: (CORE_FLOOR * length).powi(2) as f32,
         is_square: u32::from(is_square),
-        nodes: nodes + u32::from(is_square),
+        nodes: nodes.min(MOST_NODES as u32),
         depths: depths.clamp(4, MOST_DEPTHS as u32),
         top: sight.top,
-        base: sight.base,
+        base: sight.base(block),
         width,
         height,
         left: sight.left,
@@ -159,20 +180,23 @@ pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<C
         rest: sorted.rest,
         roots,
         tile_columns: width.div_ceil(8),
-        has_near_form: u32::from(sight.base > 0),
+        has_near_form: u32::from(sight.base(block) > 0 || is_dense),
         thickness: thickness as f32,
-        padding0: 0,
-        padding1: 0,
-        padding2: 0,
+        across: sight.across,
+        block,
+        padding: 0,
     })
 }
 
 impl CrowdView {
+    /// Returns how many cells a level has.
+    pub(super) fn cells(&self, level: u32) -> usize {
+        (self.across as usize).pow(2) << (2 * (self.top - level))
+    }
+
     /// Returns how many cells levels below one have.
     pub(super) fn cells_below(&self, level: u32) -> usize {
-        (0..level)
-            .map(|it| 1_usize << (6 + 2 * (self.top - it)))
-            .sum()
+        (0..level).map(|it| self.cells(it)).sum()
     }
 
     /// Returns the columns and rows of tiles of a level that have a part of the image: first and end of each.

@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::pack::{CrowdSource, Sorted, morton};
-use crate::scene::{CrowdSight, Points, Profile, Scene};
+use crate::scene::{CrowdSight, NEAREST, Points, Profile, Scene};
 use crate::threads;
 
 /// Points that one thread sees at a time.
@@ -14,9 +14,6 @@ const PIECE: usize = 1 << 16;
 
 /// Cells are first told apart by so many bits of their codes.
 const BUCKET_BITS: u32 = 9;
-
-/// A source nearer to the eye's plane than this share of the projection plane's distance is no part of the grid.
-const NEAR: f64 = 0.25;
 
 /// Sources in the order of their cells, and those beside the grid.
 #[derive(Debug, Default)]
@@ -58,7 +55,7 @@ impl Sorter {
             .filter(|it| it.profile == profile)
             .collect();
         let limit = scene.crowd_limit(profile);
-        let bits = 6 + 2 * sight.top;
+        let bits = 2 * (sight.across.ilog2() + sight.top);
         let shift = bits.saturating_sub(BUCKET_BITS);
         let mut count = 0;
         for (list, points) in lists.iter().enumerate() {
@@ -127,6 +124,7 @@ impl Sorter {
             let seen = pieces.iter().map(|it| it.buckets[number].as_slice());
             bucket[0].fill(seen, shift);
         });
+        let occupied = starts.iter().filter(|count| **count > 0).count();
         let mut sum = 0;
         for start in starts.iter_mut() {
             sum += *start;
@@ -136,17 +134,19 @@ impl Sorter {
         Sorted {
             sources: all as u32,
             rest: (rest.len() / 6) as u32,
+            occupied: occupied as u32,
             t,
         }
     }
 }
 
 impl Piece {
+    /// Sees its points but for those brighter than a limit, and those where rays begin.
     fn see(&mut self, points: &Points, sight: &CrowdSight, limit: f64, shift: u32) {
         self.buckets.iter_mut().for_each(Vec::clear);
         self.rest.clear();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        let side = f64::from(64_u32 << sight.top);
+        let side = f64::from((8 * sight.across) << sight.top);
         let per_step = sight.step.map(|step| 1.0 / step);
         let positions = points.points.positions();
         for index in self.points.clone() {
@@ -154,17 +154,15 @@ impl Piece {
             if light.max_element() > limit || light == DVec3::ZERO {
                 continue;
             }
-            let way = positions[index] - sight.eye;
-            let (x, y, z) = (
-                way.dot(sight.right),
-                way.dot(sight.down),
-                way.dot(sight.forward),
-            );
+            let [x, y, z] = sight.seen(positions[index]);
+            if sight.is_at_plane([x, y, z]) {
+                continue;
+            }
             let [red, green, blue] = light.as_vec3().to_array();
             let column = (x / z - sight.first[0]) * per_step[0];
             let row = (y / z - sight.first[1]) * per_step[1];
             let is_in_grid = (0.0..side).contains(&column) && (0.0..side).contains(&row);
-            if z < NEAR * sight.near || !is_in_grid {
+            if z < NEAREST * sight.near || !is_in_grid {
                 self.rest
                     .extend([x as f32, y as f32, z as f32, red, green, blue]);
                 continue;

@@ -9,6 +9,7 @@ mod footprint;
 mod irradiance;
 mod mesh;
 mod particles;
+mod points;
 mod quadrature;
 mod surface;
 mod volumes;
@@ -26,6 +27,8 @@ pub(crate) use mesh::see_meshes;
 #[doc(hidden)]
 pub use mesh::{MeshRay, mesh_rays};
 pub(crate) use particles::particle_light;
+#[doc(hidden)]
+pub use points::light_of_points;
 #[doc(hidden)]
 pub use quadrature::integrate;
 pub(crate) use surface::see_surfaces;

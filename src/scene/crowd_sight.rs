@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::{Crowd, List, Method, Points, Profile, Reduction, Scene, Sphere};
 use crate::error::{Error, Result};
+use crate::image::ImageSize;
 
 /// A point of more than this share of a crowd's light is not part of it.
 const SHARE_OF_ONE: f64 = 1.0 / 500.0;
@@ -13,20 +14,23 @@ const SHARE_OF_ONE: f64 = 1.0 / 500.0;
 const WIDEST: f64 = 0.4;
 const MOST_LEVELS: u32 = 7;
 
-/// Cells of the highest level in a row.
-const ACROSS: u32 = 8;
+/// Cells of the highest level in a row, and how many of them an image may have: points beyond the cells are then far
+/// from all pixels.
+const ACROSS: [(u32, u32); 2] = [(8, 4), (16, 12)];
 
 /// Cells up to this wide need no depths, a slope: rays begin no nearer or farther from one side to the other.
 const WIDTH_WITHOUT_DEPTH: f64 = 0.016;
 
-/// Points of a crowd are at least so far from the eye's plane, in distances of the projection plane.
-const NEAREST: f64 = 1.2;
+/// From so far before the plane where rays begin to so far behind it, in its distances from the eye, points are drawn by
+/// themselves, as far as they are seen: their light changes fast with their depth. What is nearer still is smooth.
+const BEFORE_PLANE: f64 = 0.6;
+pub(crate) const NEAREST: f64 = 1.2;
 
 /// Below this tolerance float32 has no digits to spare.
 const LEAST_TOLERANCE: f64 = 5e-5;
 
-/// The eye, the axes of the image, and a grid of pixels: a square whose highest cells are 8 in a row, each of
-/// `8 * 2^top` pixels a side.
+/// The eye, the axes of the image, and a grid of pixels: a square of highest cells, each of `8 * 2^top` pixels
+/// a side.
 #[derive(Debug, Clone)]
 pub(crate) struct CrowdSight {
     pub eye: DVec3,
@@ -38,13 +42,13 @@ pub(crate) struct CrowdSight {
     pub step: [f64; 2],
     pub near: f64,
     pub ray_length: f64,
-    /// The highest level.
+    /// The highest level, and how many of its cells are in a row.
     pub top: u32,
-    /// The lowest level whose cells need depths.
-    pub base: u32,
+    pub across: u32,
     /// Where in the grid the image begins, pixels.
     pub left: u32,
     pub above: u32,
+    pub image: ImageSize,
 }
 
 impl CrowdSight {
@@ -65,14 +69,13 @@ impl CrowdSight {
         let is_narrow = |top: &u32| f64::from(8_u32 << top) * step[0].max(step[1]) <= WIDEST;
         let top = (0..=MOST_LEVELS).rev().find(is_narrow);
         let top = top.ok_or_else(|| refuse("pixels are too wide"))?;
-        let width = (step[0] * step[1]).sqrt();
-        let is_deep = |level: &u32| f64::from(8_u32 << level) * width > WIDTH_WITHOUT_DEPTH;
-        let side = (ACROSS * 8) << top;
-        let begin = |size: u32| (side / 2).checked_sub(size.div_ceil(2)).map(|it| it & !7);
-        let corner = (begin(scene.image.width), begin(scene.image.height));
-        let (Some(left), Some(above)) = corner else {
+        let ImageSize { width, height } = scene.image;
+        let is_wide_enough = |(_, most): &&(u32, u32)| width.max(height) <= (most * 8) << top;
+        let Some((across, _)) = ACROSS.iter().find(is_wide_enough) else {
             return Err(refuse("the image is too wide"));
         };
+        let middle = (across * 4) << top;
+        let [left, above] = [width, height].map(|size| (middle - size.div_ceil(2)) & !7);
         let first = |axis: DVec3, step: f64, begin: u32| {
             plane.first_pixel.dot(axis) / plane.near - step * (f64::from(begin) + 0.5)
         };
@@ -86,10 +89,42 @@ impl CrowdSight {
             near: plane.near,
             ray_length: plane.ray_length,
             top,
-            base: (0..top).find(is_deep).unwrap_or(top),
+            across: *across,
             left,
             above,
+            image: scene.image,
         })
+    }
+}
+
+impl CrowdSight {
+    /// Returns the lowest level whose cells need depths, where tiles look at so many of them on each side by their
+    /// sources.
+    pub(crate) fn base(&self, block: u32) -> u32 {
+        let pixel = (self.step[0] * self.step[1]).sqrt();
+        let widest = WIDTH_WITHOUT_DEPTH * 3.0 / f64::from(2 * block + 1);
+        let is_deep = |level: &u32| f64::from(8_u32 << level) * pixel > widest;
+        (0..self.top).find(is_deep).unwrap_or(self.top)
+    }
+
+    /// Returns where a point is as the eye sees it: right, down and ahead.
+    pub(crate) fn seen(&self, point: DVec3) -> [f64; 3] {
+        let way = point - self.eye;
+        [self.right, self.down, self.forward].map(|axis| way.dot(axis))
+    }
+
+    /// Returns whether a point, as the eye sees it, is where rays begin that are seen, or near there.
+    pub(crate) fn is_at_plane(&self, [x, y, z]: [f64; 3]) -> bool {
+        let share = z / self.near;
+        let is_there = |place: f64, first: f64, step: f64, begin: u32, size: u32| {
+            let pixel = (place / z - first) / step - f64::from(begin);
+            let margin = f64::from(8_u32 << self.top);
+            (-margin..f64::from(size) + margin).contains(&pixel)
+        };
+        let ImageSize { width, height } = self.image;
+        (BEFORE_PLANE..NEAREST).contains(&share)
+            && is_there(x, self.first[0], self.step[0], self.left, width)
+            && is_there(y, self.first[1], self.step[1], self.above, height)
     }
 }
 
@@ -103,12 +138,13 @@ impl Points {
             && (self.points.lights().is_some() || self.color.min_element() >= 0.0)
     }
 
-    /// Returns whether all of them lie well behind the plane where rays begin: nearer ones are seen from many sides.
-    fn is_behind_plane(&self, sight: &CrowdSight) -> bool {
+    /// Returns whether some of them may be around the plane where rays begin.
+    fn is_around_plane(&self, sight: &CrowdSight) -> bool {
         let (low, high) = self.points.bounds();
         let (low, high) = (low - sight.eye, high - sight.eye);
-        let nearest = (low * sight.forward).min(high * sight.forward);
-        nearest.element_sum() >= NEAREST * sight.near
+        let (one, other) = (low * sight.forward, high * sight.forward);
+        let [nearest, farthest] = [one.min(other), one.max(other)].map(DVec3::element_sum);
+        nearest < NEAREST * sight.near && farthest > BEFORE_PLANE * sight.near
     }
 
     /// Returns the light of all, and of the brightest: of each the brightest channel.
@@ -129,6 +165,20 @@ impl Scene {
         SHARE_OF_ONE * crowd.map(|it| it.total().0).sum::<f64>()
     }
 
+    /// Adds those of its points that are where rays begin, and no brighter than a limit, as sources of their own.
+    fn add_points_at_plane(&self, sight: &CrowdSight, profile: Profile, spheres: &mut Vec<Sphere>) {
+        let limit = self.crowd_limit(profile);
+        let is_near = |it: &&Points| it.profile == profile && it.is_around_plane(sight);
+        for points in self.points.iter().filter(is_near) {
+            for (index, point) in points.points.positions().iter().enumerate() {
+                let is_dim = || points.light(index).max_element() <= limit;
+                if sight.is_at_plane(sight.seen(*point)) && is_dim() {
+                    spheres.push(points.sphere(index));
+                }
+            }
+        }
+    }
+
     /// Returns whether points may be drawn as crowds at all.
     fn allows_crowds(&self) -> bool {
         let integration = &self.integration;
@@ -137,9 +187,7 @@ impl Scene {
         let is_open = self.depth.is_none() && self.meshes.is_empty() && self.metaballs.is_empty();
         let no_colliders = !self.colliders.iter().any(|it| it.visible);
         let may = integration.crowd == Crowd::Auto && is_exact && is_plain && is_open;
-        // Means over wide pixels have no form here.
-        let is_seen = |it: CrowdSight| it.base > 0 || !integration.has_footprints();
-        may && no_colliders && self.fading().is_none() && CrowdSight::new(self).is_ok_and(is_seen)
+        may && no_colliders && self.fading().is_none() && CrowdSight::new(self).is_ok()
     }
 
     /// Returns the scene with those of its points as sources of their own that are not part of a crowd: all, unless
@@ -147,10 +195,8 @@ impl Scene {
     pub(crate) fn with_crowds(&self, has_crowds: bool) -> Option<Self> {
         let has_crowds = has_crowds && self.allows_crowds();
         let sight = has_crowds.then(|| CrowdSight::new(self).ok()).flatten();
-        let (crowd, apart): (Vec<&Points>, Vec<&Points>) = self.points.iter().partition(|it| {
-            let is_seen = |sight: &CrowdSight| it.is_behind_plane(sight);
-            it.may_be_crowd() && sight.as_ref().is_some_and(is_seen)
-        });
+        let is_crowd = |it: &&Points| it.may_be_crowd() && sight.is_some();
+        let (crowd, apart): (Vec<&Points>, Vec<&Points>) = self.points.iter().partition(is_crowd);
         let mut spheres: Vec<Sphere> = Vec::new();
         for points in apart {
             spheres.extend((0..points.points.len()).map(|index| points.sphere(index)));
@@ -169,6 +215,11 @@ impl Scene {
                 let all = 0..points.points.len();
                 let bright = all.filter(|index| points.light(*index).max_element() > limit);
                 spheres.extend(bright.map(|index| points.sphere(index)));
+            }
+        }
+        for profile in [Profile::Inverse, Profile::InverseSquare] {
+            if let Some(sight) = &sight {
+                scene.add_points_at_plane(sight, profile, &mut spheres);
             }
         }
         if is_all && spheres.is_empty() {

@@ -64,7 +64,7 @@ use glam::DVec3;
 pub use camera::{Camera, CameraMatrices, ClipY};
 pub(crate) use chain::Piece;
 pub use chain::{Dashes, ElectricArc};
-pub(crate) use crowd_sight::CrowdSight;
+pub(crate) use crowd_sight::{CrowdSight, NEAREST};
 pub(crate) use depth_layers::DepthLayers;
 #[cfg(feature = "files")]
 pub use depth_report::DepthReport;

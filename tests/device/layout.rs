@@ -4,8 +4,9 @@
 use crate::common;
 use energywave::internals::pack::layout::STRUCTS;
 use energywave::internals::{
-    self, BloomStep, DeviceBuffer, DeviceStruct, GLOW_STRUCTS, KINDS, LIGHT_STRUCTS, MESH_STRUCTS,
-    METABALL_STRUCTS, StoredDepths, StructLayout, TEXTURE_STRUCTS, host_depth_definitions,
+    self, BloomStep, CROWD_STRUCTS, DeviceBuffer, DeviceStruct, GLOW_STRUCTS, KINDS, LIGHT_STRUCTS,
+    MESH_STRUCTS, METABALL_STRUCTS, StoredDepths, StructLayout, TEXTURE_STRUCTS,
+    host_depth_definitions,
 };
 
 const BLOOM_STEP: StructLayout = BloomStep::LAYOUT;
@@ -41,6 +42,10 @@ fn is_of_glow(layout: &StructLayout) -> bool {
     GLOW_STRUCTS.iter().any(|it| it.name == layout.name)
 }
 
+fn is_of_crowds(layout: &StructLayout) -> bool {
+    CROWD_STRUCTS.iter().any(|it| it.name == layout.name)
+}
+
 fn is_of_textures(layout: &StructLayout) -> bool {
     TEXTURE_STRUCTS.iter().any(|it| it.name == layout.name)
 }
@@ -58,6 +63,7 @@ fn words_by_name(layout: &StructLayout) -> Vec<u32> {
         () if layout.name == BLOOM_STEP.name => "#include \"film.h\"\n#include \"bloom/step.h\"\n",
         () if is_of_metaballs(layout) => "#include \"metaball/types.h\"\n",
         () if is_of_glow(layout) => "#include \"glow/types.h\"\n",
+        () if is_of_crowds(layout) => "#include \"crowd/types.h\"\n",
         () if is_of_textures(layout) => "#include \"texture/types.h\"\n",
         () if is_of_light(layout) => "#include \"light/types.h\"\n",
         () if is_of_meshes(layout) => "#include \"mesh/types.h\"\n",
@@ -87,6 +93,7 @@ fn words_of(layout: &StructLayout, files: &str, definitions: &str) -> Vec<u32> {
             internals::build_metaball_text(&compute, name, &text, &options)
         }
         () if is_of_glow(layout) => internals::build_glow_text(&compute, name, &text, &options),
+        () if is_of_crowds(layout) => internals::build_crowd_text(&compute, name, &text, &options),
         () if is_of_textures(layout) => {
             internals::build_texture_text(&compute, name, &text, &options)
         }
@@ -120,6 +127,7 @@ fn the_device_finds_every_field_where_the_host_put_it() {
         .chain([&BLOOM_STEP])
         .chain(METABALL_STRUCTS)
         .chain(GLOW_STRUCTS)
+        .chain(CROWD_STRUCTS)
         .chain(TEXTURE_STRUCTS)
         .chain(MESH_STRUCTS)
         .chain(LIGHT_STRUCTS)

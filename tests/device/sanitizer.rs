@@ -11,7 +11,7 @@ use energywave::image::{Bloom, DepthAlong};
 use energywave::internals::see_surfaces;
 use energywave::scene::{
     Antialias, Decay, LightElement, MetaballKernel, MetaballMethod, MetaballSampling, Metaballs,
-    Method, Particles, PointList, Profile,
+    Method, Particles, PointList, Points, Profile,
 };
 use energywave::verify::built_in_rays;
 use energywave::volume::{CellValue, Grid};
@@ -337,5 +337,31 @@ fn particles_shine_within_the_memory_that_there_is() {
         let image = renderer.render(&scene).unwrap();
         let lit = image.as_slice().chunks(4).filter(|pixel| pixel[0] > 0.0);
         assert!(lit.count() > 20);
+    }
+}
+
+#[test]
+fn crowds_shine_within_the_memory_that_there_is() {
+    let device = common::device();
+    let widths = common::lane_widths().into_iter();
+    for lanes in widths.filter(|lanes| is_simulator() || *lanes == device.lanes) {
+        let mut renderer = common::renderer(lanes, "");
+        for profile in [Profile::Inverse, Profile::InverseSquare] {
+            // In a heap, along a line that leaves the view on both sides, and beside the eye.
+            let mut scene = common::empty_scene(45, 29);
+            scene.integration.method = Method::default();
+            let place = |k: u32| match k % 5 {
+                0 => DVec3::new(0.02 * f64::from(k) - 6.0, 0.2, 0.1),
+                1 => scene.camera.eye + DVec3::new(0.01 * f64::from(k), -1.0, 0.0),
+                _ => 1e-3 * f64::from(k) * DVec3::new(f64::from(k % 3), f64::from(k % 7), -1.0),
+            };
+            let points = PointList::new((0..600).map(place).collect()).unwrap();
+            let mut points = Points::new(points);
+            (points.profile, points.coefficient) = (profile, 1e-3);
+            scene.points.push(points);
+            let image = renderer.render(&scene).unwrap();
+            assert!(image.as_slice().iter().all(|value| value.is_finite()));
+            assert!(renderer.last_cost().launches > 9, "no crowd was drawn");
+        }
     }
 }

@@ -4,7 +4,7 @@ use energywave::image::ImageSize;
 use energywave::scene::{
     Antialias, Camera, Crowd, Decay, Measure, PointList, Points, Profile, Ray,
 };
-use energywave::{RadianceImage, Scene};
+use energywave::{Error, RadianceImage, Renderer, Scene};
 use fastrand::Rng;
 use glam::DVec3;
 
@@ -54,7 +54,7 @@ fn scene(from: f64, fov_y: f64, points: Points) -> Scene {
 }
 
 /// Returns the integral of zeta / d or zeta / d^2 along a ray, over s.
-fn integral(ray: &Ray, point: DVec3, profile: Profile, decay: Option<Decay>) -> f64 {
+pub fn integral(ray: &Ray, point: DVec3, profile: Profile, decay: Option<Decay>) -> f64 {
     let from = ray.origin - point;
     let (a2, b2) = (ray.span.length_squared(), from.dot(ray.span));
     let beside2 = (from - ray.span * (b2 / a2))
@@ -126,7 +126,7 @@ fn fault(errors: &[f64]) -> Option<String> {
     (!is_right).then(|| format!("99.9 % within {most:.1e}, the worst {worst:.1e}"))
 }
 
-const PROFILES: [Profile; 2] = [Profile::Inverse, Profile::InverseSquare];
+pub const PROFILES: [Profile; 2] = [Profile::Inverse, Profile::InverseSquare];
 
 /// Returns a cloud seen through a telephoto lens, one that a wide lens sees, and one that is near.
 fn scenes(profile: Profile) -> [Scene; 3] {
@@ -161,13 +161,63 @@ fn crowds_are_the_sum_of_their_points_on_every_lane_width() {
     }
 }
 
+/// How far means over pixels may be from those of single points, of most pixels and of all: both are estimates.
+const MEANS: [f64; 2] = [3e-3, 3e-2];
+
+#[test]
+fn pixels_that_are_means_are_those_of_single_points() {
+    let mut renderer = common::renderer(common::device().lanes, "");
+    for profile in PROFILES {
+        for (fov_y, name) in [(8.0, "narrow"), (45.0, "wide")] {
+            let mut scene = scene(4.0, fov_y, cloud(1500, profile));
+            scene.integration.antialias = Antialias::Footprint;
+            let together = renderer.render(&scene).unwrap();
+            scene.integration.crowd = Crowd::Never;
+            let apart = renderer.render(&scene).unwrap();
+            let off = |(a, b): (&f32, &f32)| f64::from((a / b - 1.0).abs());
+            let all = together.as_slice().iter().zip(apart.as_slice());
+            let mut errors: Vec<f64> = all.filter(|(_, b)| **b > 0.0).map(off).collect();
+            errors.sort_by(f64::total_cmp);
+            let most = errors[errors.len() * 99 / 100];
+            let worst = errors[errors.len() - 1];
+            println!("{profile:?}, {name} pixels: 99 % {most:.1e}, worst {worst:.1e}");
+            assert!(most > 1e-7, "no crowd was drawn");
+            assert!(
+                most < MEANS[0] && worst < MEANS[1],
+                "{most:.1e} {worst:.1e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_self_test_refuses_spoiled_kernels_of_crowds() {
+    let scene = &scenes(Profile::Inverse)[0];
+    for (spoiled, is_right) in [
+        ("", true),
+        ("-D ENOUGH_ALWAYS", false),
+        ("-D ONE_DEPTH", false),
+    ] {
+        let mut options = common::options(common::device().lanes, spoiled);
+        options.skips_self_test = false;
+        let mut renderer = Renderer::with_options(&common::device(), &options).unwrap();
+        match renderer.render(scene) {
+            Ok(_) => assert!(is_right, "{spoiled}"),
+            Err(error) => {
+                assert!(matches!(error, Error::SelfTest { .. }), "{error}");
+                assert!(!is_right, "{error}");
+            }
+        }
+    }
+}
+
 #[test]
 fn every_spoiled_build_of_crowds_is_found() {
     for spoiled in [
         "-D ENOUGH_ALWAYS",
         "-D ONE_DEPTH",
         "-D NO_BLOCK_LIGHT",
-        "-D BLOCK=0",
+        "-D BLOCK(view)=0u",
         "-D MIDDLES_ONLY",
     ] {
         let mut renderer = common::renderer(common::device().lanes, spoiled);

@@ -1,0 +1,129 @@
+//! The first use of freshly built kernels: a crowd of each profile, with decay and without, whose light the reference
+//! sums in float64, by another closed form than that of `cl/crowd/point.h`. Some drivers miscompile kernels.
+
+use glam::DVec3;
+
+use super::Crowd;
+use super::kernels::Kernels;
+use crate::error::{Error, Result};
+use crate::image::ImageSize;
+use crate::opencl::{Compute, Film, FilmFormat, Program, RendererOptions};
+use crate::reference::light_of_points;
+use crate::scene::{
+    Antialias, Camera, Decay, Measure, Method, PointList, Points, Profile, Ray, Scene,
+};
+
+/// No multiple of a tile.
+const SIZE: ImageSize = ImageSize {
+    width: 43,
+    height: 29,
+};
+
+/// Every so many pixels are looked at.
+const EVERY: usize = 5;
+
+/// More than a crowd's limit for one of them; some tiles are open to the end and some are not.
+const COUNT: u32 = 700;
+
+/// The tolerance that is asked for; the error that a pixel may have, which is also for half floats.
+const TOLERANCE: f64 = 1e-4;
+const LIMIT: f64 = 20.0 * TOLERANCE;
+
+/// Tests kernels, unless that was done on this device before.
+///
+/// # Errors
+/// [`Error::SelfTest`] if they compute wrong.
+pub(super) fn self_test(
+    compute: &Compute,
+    format: FilmFormat,
+    options: &RendererOptions,
+    (kernels, program): (Kernels, &Program),
+) -> Result<Kernels> {
+    let is_experiment = options.skips_self_test || compute.device().is_simulator;
+    if is_experiment || program.was_tested() {
+        return Ok(kernels);
+    }
+    let mut tester = Crowd::new(options, Profile::Inverse);
+    tester.kernels.insert(format, kernels);
+    for profile in [Profile::Inverse, Profile::InverseSquare] {
+        tester.profile = profile;
+        for decay in [None, Some(Decay::new(0.3, 0.2))] {
+            let scene = scene(profile, decay)?;
+            let found = tester.light(compute, &scene, format)?;
+            if let Some(reason) = difference(&scene, &found) {
+                let device = compute.device();
+                return Err(Error::SelfTest {
+                    device: device.name.clone(),
+                    driver: format!("{} {}", device.platform, device.driver),
+                    reason,
+                });
+            }
+        }
+    }
+    program.mark_tested();
+    tester.kernels.remove(&format).ok_or_else(|| {
+        Error::Unsupported("the kernels of crowds were lost in their test".to_owned())
+    })
+}
+
+impl Crowd {
+    /// Returns the light of a frame.
+    fn light(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        format: FilmFormat,
+    ) -> Result<Vec<[f32; 4]>> {
+        let pixels = SIZE.pixels();
+        let mut found = vec![[0.0; 4]; pixels];
+        if let Some(plan) = self.plan(compute, scene, format)? {
+            let mut film = Film::in_format(compute, format, SIZE.width, SIZE.height)?;
+            film.reserve_band(compute, pixels, 1)?;
+            self.draw(compute, &plan, 0..pixels as u32, &mut film)?;
+            film.read(compute, &mut found)?;
+            self.settle(compute)?;
+        }
+        Ok(found)
+    }
+}
+
+fn scene(profile: Profile, decay: Option<Decay>) -> Result<Scene> {
+    let mut scene = Scene::new(Camera::new(DVec3::new(0.3, -4.0, 0.5), DVec3::ZERO));
+    scene.image = SIZE;
+    scene.camera.fov_y = 22.0;
+    scene.camera.ray_length = Some(7.0);
+    scene.integration.measure = Measure::Length;
+    scene.integration.antialias = Antialias::None;
+    scene.integration.method = Method::exact(TOLERANCE);
+    scene.decay = decay;
+    // Evenly in a cube: multiples of powers of the root of x^4 = x + 1 (Roberts 2018).
+    let root = 1.220_744_084_605_759_5_f64;
+    let share = |k: u32, power: i32| 2.0 * (f64::from(k) * root.powi(-power)).fract() - 1.0;
+    let place = |k: u32| DVec3::new(share(k, 1), share(k, 2), share(k, 3));
+    let light = |k: u32| [1.0, 0.2 + 0.2 * (k % 5) as f32, 0.5];
+    let (places, lights) = ((0..COUNT).map(place), (0..COUNT).map(light));
+    let list = PointList::with_lights(places.collect(), lights.collect())?;
+    let mut points = Points::new(list);
+    (points.profile, points.coefficient) = (profile, 1e-3);
+    scene.points.push(points);
+    Ok(scene)
+}
+
+/// Says where light is not what it is to be.
+fn difference(scene: &Scene, found: &[[f32; 4]]) -> Option<String> {
+    let plane = scene.view_plane();
+    let pixels: Vec<usize> = (0..found.len()).step_by(EVERY).collect();
+    let ray = |index: &usize| plane.ray(*index as u32 % SIZE.width, *index as u32 / SIZE.width);
+    let rays: Vec<Ray> = pixels.iter().map(ray).collect();
+    for (index, light) in pixels.into_iter().zip(light_of_points(scene, &rays)) {
+        for (found, expected) in found[index].iter().zip(light) {
+            let is_right = (f64::from(*found) - expected).abs() <= LIMIT * expected;
+            if !is_right {
+                return Some(format!(
+                    "the light of a crowd along ray {index} is {found}; it is {expected}"
+                ));
+            }
+        }
+    }
+    None
+}
