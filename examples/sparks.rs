@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use energywave::image::{Exposure, ImageSize};
+use energywave::image::{Exposure, ImageSize, ToneMap};
 use energywave::scene::{Camera, PointList, Points, Profile};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
@@ -36,7 +36,9 @@ fn main() -> energywave::Result<()> {
         width: 640,
         height: 360,
     };
-    scene.display.exposure = Exposure::Auto;
+    // All that light together is a veil: dark enough, only the arms and the core are left.
+    scene.display.exposure = Exposure::Stops(-4.6);
+    scene.display.tone_map = ToneMap::Aces;
     for frame in 0..3 {
         let begun = Instant::now();
         let time = 0.04 * f64::from(frame);

@@ -21,8 +21,8 @@ const ACROSS: [(u32, u32); 2] = [(8, 4), (16, 12)];
 /// Cells up to this wide need no depths, a slope: rays begin no nearer or farther from one side to the other.
 const WIDTH_WITHOUT_DEPTH: f64 = 0.016;
 
-/// From so far before the plane where rays begin to so far behind it, in its distances from the eye, points are drawn by
-/// themselves, as far as they are seen: their light changes fast with their depth. What is nearer still is smooth.
+/// From so far before the plane where rays begin to so far behind it, in its distances from the eye, points are drawn
+/// by themselves, as far as they are seen: their light changes fast with their depth. What is nearer still is smooth.
 const BEFORE_PLANE: f64 = 0.6;
 pub(crate) const NEAREST: f64 = 1.2;
 
