@@ -16,8 +16,7 @@ use super::records::{Origin, Spread};
 use super::subcommands::{BenchArguments, TableName};
 use super::{
     Outcome, bench_2006, bench_2008, bench_2013, bench_crowd, choose_devices, names, note, print,
-    read_scene,
-    tell_depths,
+    read_scene, tell_depths,
 };
 
 /// A cell of a table.

@@ -375,6 +375,7 @@ class Image(Table):
     ) -> None: ...
 
 class Integration(Table):
+    absolute_tolerance: _Number
     antialias: Literal["footprint", "none"]
     crowd: Literal["auto", "never"]
     divisions: int
@@ -392,6 +393,7 @@ class Integration(Table):
     def __init__(
         self,
         *,
+        absolute_tolerance: Optional[_Number] = None,
         antialias: Optional[Literal["footprint", "none"]] = None,
         crowd: Optional[Literal["auto", "never"]] = None,
         divisions: Optional[int] = None,
