@@ -80,12 +80,13 @@ Coefficients highest_coefficients(const float q, const float4 v0, const float4 v
 }
 
 // Returns whether values at the nodes look like those of a function that can be interpolated: the highest coefficients
-// are small beside the least value, or a least light. Never where a value is not a number.
+// are small beside the least value, or as small as an error may be of a least light. Never where a value is not a
+// number.
 bool seems_smooth(const TilePass *const pass, const float least_light, __local const float *const values) {
     const float4 v0 = vload4(0, values), v1 = vload4(1, values), v2 = vload4(2, values), v3 = vload4(3, values);
     const float4 sizes = min(min(fabs(v0), fabs(v1)), min(fabs(v2), fabs(v3)));
     const float2 two = min(sizes.lo, sizes.hi);
-    const float least = max(min(two.x, two.y), least_light);
+    const float least = min(two.x, two.y), absolute = pass->most_error * least_light;
     const float q = inner_place(pass);
     const Coefficients down = highest_coefficients(q, v0, v1, v2, v3);
     const Coefficients across =
@@ -93,6 +94,6 @@ bool seems_smooth(const TilePass *const pass, const float least_light, __local c
                              (float4)(v0.z, v1.z, v2.z, v3.z), (float4)(v0.w, v1.w, v2.w, v3.w));
     const float4 sums = (v0 + v1) + (v2 + v3);
     const bool are_numbers = !isnan((sums.x + sums.y) + (sums.z + sums.w));
-    return are_numbers && max(down.even, across.even) <= pass->most_even * least &&
-           max(down.odd, across.odd) <= pass->most_odd * least;
+    return are_numbers && max(down.even, across.even) <= max(pass->most_even * least, absolute) &&
+           max(down.odd, across.odd) <= max(pass->most_odd * least, absolute);
 }
