@@ -314,11 +314,11 @@ fn light_may_be_off_by_an_absolute_tolerance_which_saves_integrals_and_keeps_bla
         excess.sort_by(f32::total_cmp);
         (excess[excess.len() * 999 / 1000], excess[excess.len() - 1])
     };
-    let ((strict, all), (own, fewer), (wide, _)) = (draw(0.0), draw(ABSOLUTE), draw(0.1));
+    let ((strict, all), (own, fewer), (wide, _)) = (draw(0.0), draw(ABSOLUTE), draw(1.0));
     let found = [&strict, &own, &wide].map(beyond);
     assert!(fewer < all * 4 / 5, "{fewer} of {all}");
-    assert!(found[0].1 <= 0.0 && found[1].0 < 1.0 && found[1].1 < 10.0);
-    assert!(found[2].0 > 1.0 && found[2].1 > 10.0);
+    assert!(found[0].1 <= 0.0 && found[1].1 < 1.0, "{found:?}");
+    assert!(found[2].0 > 1.0, "{found:?}");
     assert!(own.as_slice().iter().all(|value| *value >= 0.0));
     // Black stays black, but where a tile's light ends between its nodes.
     let pairs = own.as_slice().iter().zip(truth.as_slice());
