@@ -89,16 +89,17 @@ typedef ulong2 pairv;
 #define as_pairv as_ulong2
 #endif
 
-// Stores half the lanes' pixels, woven from their channels: red with green and blue with alpha, then pairs with pairs.
-// Written element by element, the same costs a torus of 64 divisions a tenth of its frame.
-void store_half(const Channels channels, const HALF_FLOATS red, const HALF_FLOATS green, const HALF_FLOATS blue) {
+// Stores half the lanes' pixels, in two places, woven from their channels: red with green and blue with alpha, then
+// pairs with pairs. Written element by element, the same costs a torus of 64 divisions a tenth of its frame.
+void store_half(const Channels near, const Channels far, const HALF_FLOATS red, const HALF_FLOATS green,
+                const HALF_FLOATS blue) {
     floatv red_green = splat(0.0f), blue_alpha = splat(1.0f);
     red_green.even = red, red_green.odd = green, blue_alpha.even = blue;
     pairv first = (pairv)(0), second = (pairv)(0);
     first.even = as_pairv(red_green).lo, first.odd = as_pairv(blue_alpha).lo;
     second.even = as_pairv(red_green).hi, second.odd = as_pairv(blue_alpha).hi;
-    STORE(LANES)(IN_RANGE(as_floatv(first)), 0, channels);
-    STORE(LANES)(IN_RANGE(as_floatv(second)), 1, channels);
+    STORE(LANES)(IN_RANGE(as_floatv(first)), 0, near);
+    STORE(LANES)(IN_RANGE(as_floatv(second)), 0, far);
 }
 #endif
 
@@ -107,8 +108,8 @@ INLINE void store_all_pixels(const Channels first_half, const Channels second_ha
 #if LANES == 1
     STORE(4)(IN_RANGE((float4)(color.x, color.y, color.z, 1.0f)), 0, first_half);
 #else
-    store_half(first_half, color.x.lo, color.y.lo, color.z.lo);
-    store_half(second_half, color.x.hi, color.y.hi, color.z.hi);
+    store_half(first_half, first_half + LANES, color.x.lo, color.y.lo, color.z.lo);
+    store_half(second_half, second_half + LANES, color.x.hi, color.y.hi, color.z.hi);
 #endif
 }
 
@@ -185,4 +186,24 @@ INLINE void store_pixels(const FilmPart *const part, const uint begin, const flo
 #endif
     const Clip clip = {0, LANES, 0, count, 1};
     store_clipped(part, begin, &clip, light, FILM_ARGUMENT);
+}
+
+// Writes the light of a block of whole rows side by side, of which the image has so many columns and rows; `corner` is
+// its first pixel in the part, `pitch` pixels lie from one row to the next.
+INLINE void store_rows(const FilmPart *const part, const uint corner, const Clip *const clip, const float3v light,
+                       FILM_PARAMETER) {
+#if defined(STORES_WHOLE) && LANES > 1
+    const bool is_whole = clip->columns >= clip->block_width && clip->rows * clip->block_width >= LANES;
+    if (is_whole && stores_whole(part)) {
+        // A vector of channels is a row of four pixels, or half a row.
+        const uint a_vector = LANES / 4u, a_row = clip->block_width / a_vector;
+        Channels places[4];
+        for (uint at = 0u; at < 4u; ++at)
+            places[at] = channels_of(part, corner + at / a_row * clip->pitch + at % a_row * a_vector, FILM_ARGUMENT);
+        store_half(places[0], places[1], light.x.lo, light.y.lo, light.z.lo);
+        store_half(places[2], places[3], light.x.hi, light.y.hi, light.z.hi);
+        return;
+    }
+#endif
+    store_clipped(part, corner, clip, light, FILM_ARGUMENT);
 }

@@ -1,8 +1,8 @@
 // The light of a ball, or of a stretch of a streak, along rays.
 //
-// With x = 1 - d^2/h^2, t = sqrt x, D = 1 - x and A = artanh t the moments of (1 - r/h)^2 about the place where a ray
-// is closest to a ball are h F0, h^3 F2, h^5 F4:
-//   F0 = 2 t - (4/3) t^3 - 2 D A = sum_{k>=2} 4 t^(2k+1) / ((2k-1)(2k+1)), and F2, F4 alike;
+// With x = 1 - d^2/h^2, t = sqrt x and D = 1 - x the moments of (1 - r/h)^2 about the place where a ray is closest to a
+// ball are h F0, h^3 F2, h^5 F4, each a smooth function of t and a share of D ln D:
+//   F0 = 2 t - (4/3) t^3 - 2 D ln(1 + t) + D ln D, F2 = ... - (1/4) D^2 ln D, F4 = ... + (1/8) D^3 ln D;
 // those of (1 - r^2/h^2)^3 are (32/35) t^7, (32/315) t^9, (32/1155) t^11. A decay alpha/(s + beta)^2 far from its pole,
 // W away, gives alpha L^2/W^2 (M0 + 3 M2/W^2 + 5 M4/W^4). Whatever is cut, near the pole, or no ball is summed by
 // panels of Gauss and Legendre that begin where the ray is closest, in y, the root of the share of the panel.
@@ -154,63 +154,70 @@ INLINE Passing passing(const Block *const block, const float x, const float y, c
     return it;
 }
 
-// Factors of the powers of x in F0/t^5, F2/t^7 and F4/t^9, the highest last.
-__constant float OF_F0[9] = {2.666666667e-01f, 1.142857143e-01f, 6.349206349e-02f, 4.040404040e-02f, 2.797202797e-02f,
-                             2.051282051e-02f, 1.568627451e-02f, 1.238390093e-02f, 1.002506266e-02f};
-__constant float OF_F2[6] = {3.809523810e-02f, 1.269841270e-02f, 5.772005772e-03f,
-                             3.108003108e-03f, 1.864801865e-03f, 1.206636501e-03f};
-__constant float OF_F4[5] = {1.269841270e-02f, 3.463203463e-03f, 1.332001332e-03f, 6.216006216e-04f, 3.290826820e-04f};
+// Minimax polynomials in t of what is smooth of F0/t, F2/t and F4/t, the lowest power first: within 3e-8, 1e-6 and
+// 5e-5.
+__constant float OF_F0[8] = {-3.002489891e-06f, 1.000104485e+00f,  -1.255754341e-03f, -4.925518022e-01f,
+                             2.413101417e-01f,  -1.128021289e-01f, 3.830246926e-02f,  -6.437768702e-03f};
+__constant float OF_F2[6] = {-6.547561012e-05f, -2.486476567e-01f, -9.433025751e-03f,
+                             4.061955820e-01f,  -5.575475766e-02f, -2.562899517e-02f};
+__constant float OF_F4[5] = {2.525937431e-03f, 8.588014377e-02f, 1.993991679e-01f, -7.684398139e-01f, 4.996312911e-01f};
 
 // Returns a polynomial of so many factors.
 #define POLYNOMIAL(result, factors, count)                                                                             \
     floatv result = splat(factors[count - 1]);                                                                         \
-    _Pragma("unroll") for (int power = count - 2; power >= 0; --power) result = fma(result, x, splat(factors[power]))
+    _Pragma("unroll") for (int power = count - 2; power >= 0; --power) result = fma(result, t, splat(factors[power]))
 
 // The moments of a ball about the place where the ray is closest, in radii.
 typedef struct {
     floatv zeroth, second, fourth;
 } Moments;
 
-INLINE Moments moments(const floatv x, const bool is_smooth, const bool fades) {
+// Returns them from t, and from D = d^2/h^2, 1 where the ray passes by: without a branch, so that the moments of
+// several balls are under way at once.
+INLINE Moments moments(const floatv t, const floatv d, const bool is_smooth, const bool fades) {
     Moments result = {splat(0.0f), splat(0.0f), splat(0.0f)};
-    const floatv t = root(x), x2 = x * x;
     if (is_smooth) {
-        const floatv t7 = x2 * x * t;
+        const floatv x = t * t, t7 = x * x * x * t;
         result.zeroth = (32.0f / 35.0f) * t7;
         result.second = (32.0f / 315.0f) * t7 * x;
-        result.fourth = (32.0f / 1155.0f) * t7 * x2;
+        result.fourth = (32.0f / 1155.0f) * t7 * x * x;
         return result;
     }
-    const intv is_short = x < 0.3f; // where the closed forms lose digits
-    if (any_lane(is_short)) {
-        const floatv t5 = x2 * t;
-        POLYNOMIAL(zeroth, OF_F0, 9);
-        result.zeroth = t5 * zeroth;
-        if (fades) {
-            POLYNOMIAL(second, OF_F2, 6);
-            POLYNOMIAL(fourth, OF_F4, 5);
-            result.second = t5 * x * second;
-            result.fourth = t5 * x2 * fourth;
-        }
-    }
-    if (any_lane(~is_short)) {
-        const floatv d = max(1.0f - x, splat(0.0f));
-        const floatv above = 1.0f + t;
-        const floatv artanh = (0.5f * LN_2) * binary_logarithm(above * above * inverse(max(d, splat(TINY))));
-        const floatv t3 = x * t, d_artanh = d * artanh;
-        const floatv zeroth = fma(t3, splat(-4.0f / 3.0f), 2.0f * t) - 2.0f * d_artanh;
-        result.zeroth = select(zeroth, result.zeroth, is_short);
-        if (fades) {
-            const floatv t5 = t3 * x;
-            const floatv r2 = 0.25f * t - 0.125f * d * (t + d_artanh);
-            const floatv r4 = t3 * (1.0f / 6.0f) - 0.5f * d * r2;
-            const floatv second = 2.0f * (t3 * (1.0f / 3.0f) - 2.0f * r2 + t5 * 0.2f + d * t3 * (1.0f / 3.0f));
-            const floatv fourth = 2.0f * (t5 * 0.2f - 2.0f * r4 + t5 * x * (1.0f / 7.0f) + d * t5 * 0.2f);
-            result.second = select(second, result.second, is_short);
-            result.fourth = select(fourth, result.fourth, is_short);
-        }
+    const floatv d_logarithm = d * (LN_2 * binary_logarithm(max(d, splat(TINY))));
+    POLYNOMIAL(zeroth, OF_F0, 8);
+    result.zeroth = max(fma(zeroth, t, d_logarithm), splat(0.0f));
+    if (fades) {
+        const floatv more = d * d_logarithm;
+        POLYNOMIAL(second, OF_F2, 6);
+        POLYNOMIAL(fourth, OF_F4, 5);
+        result.second = fma(second, t, -0.25f * more);
+        result.fourth = fma(fourth, t, 0.125f * d * more);
     }
     return result;
+}
+
+// Returns the integral over a whole chord: the moments' sum, with the decay if there is one, `to_pole` from its pole.
+INLINE floatv chord_light(const GlowView *const view, const float radius, const float inverse_radius, const floatv d2,
+                          const floatv to_pole, const bool is_smooth, const bool has_decay) {
+    const floatv chord2 = max(radius * radius - d2, splat(0.0f));
+    const floatv t = min(root(chord2) * inverse_radius, splat(1.0f));
+    const floatv d = min(d2 * (inverse_radius * inverse_radius), splat(1.0f));
+    const Moments sum = moments(t, d, is_smooth, has_decay);
+    const float measure = radius * view->scale;
+    if (!has_decay)
+        return sum.zeroth * measure;
+    const floatv share = inverse(to_pole), step = radius * share, step2 = step * step;
+    const floatv more = fma(step2, 5.0f * sum.fourth, 3.0f * sum.second);
+    const floatv w = view->ray_length * share;
+    return fma(step2, more, sum.zeroth) * measure * w * w;
+}
+
+// Returns the light of a ball of emission 1 whose chords all lie on the rays, far from the decay's pole.
+INLINE floatv clear_ball_light(const GlowView *const view, const Block *const block,
+                               __global const Element *const element) {
+    const Passing it = passing(block, element->x, element->y, element->z);
+    return chord_light(view, element->radius, element->inverse_radius, it.d2, view->beta - block->begin + it.at,
+                       (element->form & IS_SMOOTH) != 0u, view->power == 2u);
 }
 
 // Returns the light of a ball of emission 1.
@@ -236,14 +243,7 @@ INLINE floatv ball_light(const GlowView *const view, const Block *const block, _
     const intv by_panels = meets & (is_plain ? is_cut | is_near : (intv)(-1));
     floatv light = splat(0.0f);
     if (any_lane(meets & ~by_panels)) {
-        const Moments sum = moments(clamp(chord2 * (1.0f / (h * h)), 0.0f, 1.0f), is_smooth, has_decay);
-        light = sum.zeroth * (h * view->scale);
-        if (has_decay) {
-            const floatv share = 1.0f / to_pole, step = h * share, step2 = step * step;
-            const floatv more = fma(step2, 5.0f * sum.fourth, 3.0f * sum.second);
-            const floatv w = view->ray_length * share;
-            light = fma(step2, more, sum.zeroth) * (h * view->scale) * w * w;
-        }
+        light = chord_light(view, h, element->inverse_radius, it.d2, to_pole, is_smooth, has_decay);
         light = select(splat(0.0f), light, meets & ~by_panels);
     }
     if (any_lane(by_panels)) {

@@ -1,76 +1,142 @@
-// Draws balls and streaks of light: of each block of rays those that its tile lists, in the order of their numbers, so
+// Draws balls and streaks of light: of each unit of rays those that its tile lists, in the order of their numbers, so
 // that sums have one value however the image is cut into tiles, bands and launches.
 #include "../film.h"
 #include "element.h"
+#include "near.h"
 
-// Returns what of a vector is across the middle ray of a block.
-float4 across_middle(const Block *const block, const float4 v) {
-    return v - dot(v, block->middle) * block->middle;
+// What rays have gathered, a block's side by side.
+typedef struct {
+    float3v light[UNIT * UNIT];
+} Gathered;
+
+// A block of a unit: its first pixel.
+typedef struct {
+    uint column, row;
+} Corner;
+
+// Returns the so manieth block of a unit.
+Corner corner_of(const uint column, const uint row, const uint number) {
+    const Corner corner = {column + number % UNIT * BLOCK_COLUMNS, row + number / UNIT * BLOCK_ROWS};
+    return corner;
 }
 
-// Says whether any ray of a block may come within an element: how far its core is from the middle ray, from which other
-// rays are as far as they have spread where they meet the element.
-bool may_be_near(const GlowView *const view, const Block *const block, __global const Element *const element) {
-    float4 core = (float4)(element->x, element->y, element->z, 0.0f);
-    float radius = element->radius, farthest = element->z;
-    if (view->is_parallel)
-        core -= (float4)(block->middle_x, block->middle_y, 0.0f, 0.0f);
-    core = across_middle(block, core);
-    if (element->form & IS_STRETCH) {
-        const float4 axis = across_middle(block, (float4)(element->axis_x, element->axis_y, element->axis_z, 0.0f));
-        const float along = -dot(core, axis) / max(dot(axis, axis), TINY);
-        core += clamp(along, -1.0f, 1.0f) * axis;
-        radius += fabs(element->growth);
-        farthest += fabs(element->axis_z);
+// Says whether a part may have pixels of a block.
+bool has_block(const FilmPart *const part, const GlowView *const view, const Corner *const block) {
+    return block->column < view->width && block->row < view->height &&
+           block->row * view->width < part->first + part->count &&
+           (block->row + BLOCK_ROWS) * view->width > part->first;
+}
+
+// Adds an element's light along the rays of a block.
+INLINE void add_element(const GlowView *const view, const Cone *const cone, const Block *const block,
+                        __global const Element *const element, float3v *const light) {
+    floatv it;
+    if ((element->form & IS_CLEAR) && element->z + element->radius <= block->least_z) {
+        it = clear_ball_light(view, block, element);
+    } else if (element->form & IS_STRETCH) {
+        const float4 middle = (float4)(element->x, element->y, element->z, 0.0f);
+        const float4 axis = (float4)(element->axis_x, element->axis_y, element->axis_z, 0.0f);
+        if (!any_lane(is_stretch_near(view, cone, uniform3(middle), uniform3(axis), splat(element->growth),
+                                      splat(element->radius))))
+            return;
+        it = stretch_light(view, block, element);
+    } else {
+        it = ball_light(view, block, element);
     }
-#ifdef NARROW
-    radius *= 0.7f; // spoiled
-#endif
-    const float most = fma(block->spread, view->is_parallel ? 1.0f : fabs(farthest) + radius, 1.001f * radius);
-    return dot(core, core) <= most * most;
+    light->x = fma(it, splat(element->red), light->x);
+    light->y = fma(it, splat(element->green), light->y);
+    light->z = fma(it, splat(element->blue), light->z);
 }
 
-// Returns the light of a tile's elements along the rays of a block.
-INLINE float3v block_light(const GlowView *const view, const Block *const block, __global const Element *const elements,
-                           __global const uint *const numbers, const uint begin, const uint end, float3v light) {
-    for (uint place = begin; place < end; ++place) {
-        __global const Element *const element = elements + numbers[place];
-        if (!may_be_near(view, block, element))
+// Adds the light of candidates to the blocks of a unit.
+INLINE void add_light(const FilmPart *const part, const GlowView *const view, const uint column, const uint row,
+                      __global const Element *const elements, const Candidates *const candidates,
+                      __global const float *const depths, Gathered *const gathered) {
+    for (uint number = 0u; number < UNIT * UNIT; ++number) {
+        const Corner corner = corner_of(column, row, number);
+        if (!has_block(part, view, &corner))
             continue;
-        const bool is_ball = (element->form & IS_STRETCH) == 0u;
-        const floatv it = is_ball ? ball_light(view, block, element) : stretch_light(view, block, element);
-        light.x = fma(it, splat(element->red), light.x);
-        light.y = fma(it, splat(element->green), light.y);
-        light.z = fma(it, splat(element->blue), light.z);
+        const Cone cone = cone_of(view, corner.column, corner.row, BLOCK_COLUMNS, BLOCK_ROWS);
+#if UNIT == 1
+        const uint count = candidates->count;
+#else
+        ushort list[ROOM + LANES];
+        const uint count = near_block(view, &cone, candidates, list);
+#endif
+        if (count == 0u)
+            continue;
+        const Block block = block_at(view, corner.column, corner.row, depths);
+        if (!any_lane(block.begin < block.end))
+            continue;
+        float3v light = gathered->light[number];
+        for (uint place = 0u; place < count; ++place) {
+#if UNIT == 1
+            const uint at = candidates->number[place];
+#else
+            const uint at = candidates->number[list[place]];
+#endif
+            add_element(view, &cone, &block, elements + at, &light);
+        }
+        gathered->light[number] = light;
     }
-    return light;
+}
+
+INLINE void store_light(const FilmPart *const part, const GlowView *const view, const uint column, const uint row,
+                        const Gathered *const gathered, FILM_PARAMETER) {
+    for (uint number = 0u; number < UNIT * UNIT; ++number) {
+        const Corner corner = corner_of(column, row, number);
+        if (!has_block(part, view, &corner))
+            continue;
+        float3v light = gathered->light[number];
+        const uint first = corner.row * view->width + corner.column, end = part->first + part->count;
+        const uint columns = min(BLOCK_COLUMNS, view->width - corner.column);
+        const uint rows = min(BLOCK_ROWS, view->height - corner.row);
+        if (first >= part->first && first + (rows - 1u) * view->width + columns <= end) {
+            const Clip clip = {0u, BLOCK_COLUMNS, view->width, columns, rows};
+            if (part->adds)
+                light = add3(gathered_clipped(part, first - part->first, &clip, pixels), light);
+            store_rows(part, first - part->first, &clip, light, FILM_ARGUMENT);
+            continue;
+        }
+        // A part may begin and end within a block.
+        float red[LANES], green[LANES], blue[LANES];
+        scatter(light.x, red), scatter(light.y, green), scatter(light.z, blue);
+        for (uint lane = 0u; lane < LANES; ++lane) {
+            const uint x = corner.column + lane % BLOCK_COLUMNS;
+            const uint pixel = (corner.row + lane / BLOCK_COLUMNS) * view->width + x;
+            if (x >= view->width || pixel < part->first || pixel >= end)
+                continue;
+            const uint index = pixel - part->first;
+            const float4 there = part->adds ? pixels[part->slot + index] : (float4)(0.0f);
+            store_pixel(part, index, there + (float4)(red[lane], green[lane], blue[lane], 0.0f), FILM_ARGUMENT);
+        }
+    }
 }
 
 __kernel void draw_particles(const FilmPart part, const GlowView view, __global const Element *const restrict elements,
                              __global const uint *const restrict ends, __global const uint *const restrict numbers,
-                             __global const float *const restrict depths, const uint first_block, const uint end_block,
+                             __global const float *const restrict depths, const uint first_unit, const uint end_unit,
                              FILM_PARAMETER) {
-    const uint number = first_block + get_global_id(0);
-    if (number >= end_block)
+    const uint unit = first_unit + get_global_id(0);
+    if (unit >= end_unit)
         return;
-    const uint block_columns = (view.width + BLOCK_COLUMNS - 1u) / BLOCK_COLUMNS;
-    const uint column = number % block_columns * BLOCK_COLUMNS, row = number / block_columns * BLOCK_ROWS;
+    const uint unit_columns = (view.width + UNIT_COLUMNS - 1u) / UNIT_COLUMNS;
+    const uint column = unit % unit_columns * UNIT_COLUMNS, row = unit / unit_columns * UNIT_ROWS;
     const uint tile = row / view.tile * view.tile_columns + column / view.tile;
-    const uint begin = tile > 0u ? ends[tile - 1u] : 0u;
-    float3v light = uniform3((float4)(0.0f));
-    if (begin < ends[tile]) {
-        const Block block = block_at(&view, column, row, depths);
-        if (any_lane(block.begin < block.end))
-            light = block_light(&view, &block, elements, numbers, begin, ends[tile], light);
+    const uint end = ends[tile];
+    uint at = tile > 0u ? ends[tile - 1u] : 0u;
+    Gathered gathered;
+    for (uint number = 0u; number < UNIT * UNIT; ++number)
+        gathered.light[number] = uniform3((float4)(0.0f));
+    if (at < end) {
+        const Cone cone = cone_of(&view, column, row, UNIT_COLUMNS, UNIT_ROWS);
+        Candidates candidates;
+        while (at < end) {
+            candidates.count = 0u;
+            for (; at < end && candidates.count + LANES <= ROOM; at += LANES)
+                add_candidates(&view, &cone, elements, numbers, at, end, &candidates);
+            add_light(&part, &view, column, row, elements, &candidates, depths, &gathered);
+        }
     }
-    float red[LANES], green[LANES], blue[LANES];
-    scatter(light.x, red), scatter(light.y, green), scatter(light.z, blue);
-    for (uint lane = 0u; lane < LANES; ++lane) {
-        const uint x = column + lane % BLOCK_COLUMNS, pixel = (row + lane / BLOCK_COLUMNS) * view.width + x;
-        if (x >= view.width || pixel < part.first || pixel >= part.first + part.count)
-            continue;
-        const uint index = pixel - part.first;
-        const float4 there = part.adds ? pixels[part.slot + index] : (float4)(0.0f);
-        store_pixel(&part, index, there + (float4)(red[lane], green[lane], blue[lane], 0.0f), FILM_ARGUMENT);
-    }
+    store_light(&part, &view, column, row, &gathered, FILM_ARGUMENT);
 }

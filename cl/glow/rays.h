@@ -11,19 +11,40 @@
 typedef struct {
     floatv offset_x, offset_y;
     floatv slope_x, slope_y;
-    float3v toward;                   // the direction, of length 1
-    floatv per_z;                     // the length along a ray in which it goes 1 along the axis of view
-    floatv begin, end;                // the stretch that light is gathered on, lengths from the eye, or its plane
-    float middle_x, middle_y, spread; // slope, or offset, of the block's middle, and how far its rays are from that
-    float4 middle;                    // the direction there, of length 1
+    float3v toward;    // the direction, of length 1
+    floatv per_z;      // the length along a ray in which it goes 1 along the axis of view
+    floatv begin, end; // the stretch that light is gathered on, lengths from the eye, or its plane
+    float least_z;     // before that, along the axis of view, no depth ends a ray
 } Block;
+
+// What holds rays side by side: their middle, and how far they spread from it.
+typedef struct {
+    float x, y;    // offset of the middle ray; of an eye 0
+    float4 toward; // its direction, of length 1
+    float spread;  // of slopes, or of offsets
+} Cone;
+
+// Returns that of a rectangle of pixels.
+Cone cone_of(const GlowView *const view, const uint column, const uint row, const uint columns, const uint rows) {
+    const float across = 0.5f * (float)(columns - 1u), down = 0.5f * (float)(rows - 1u);
+    const float begin_x = fma((float)row + down, view->skew_x, view->first_x);
+    const float x = fma((float)column + across, view->step_x, begin_x);
+    const float y = fma((float)row + down, view->step_y, view->first_y);
+    const float spread_x = fma(across, view->step_x, down * fabs(view->skew_x)), spread_y = down * view->step_y;
+    Cone cone;
+    cone.x = view->is_parallel ? x : 0.0f, cone.y = view->is_parallel ? y : 0.0f;
+    cone.toward = view->is_parallel ? (float4)(0.0f, 0.0f, 1.0f, 0.0f) : normalize((float4)(x, y, 1.0f, 0.0f));
+    cone.spread = 1.001f * sqrt(fma(spread_x, spread_x, spread_y * spread_y)) + 1e-6f;
+    return cone;
+}
 
 // Returns the rays of a block of pixels.
 INLINE Block block_at(const GlowView *const view, const uint column, const uint row,
                       __global const float *const depths) {
     const uintv columns = min(column + LANE_NUMBERS % BLOCK_COLUMNS, (uintv)(view->width - 1u));
     const uintv rows = min(row + LANE_NUMBERS / BLOCK_COLUMNS, (uintv)(view->height - 1u));
-    const floatv x = fma(to_floatv(columns), splat(view->step_x), splat(view->first_x));
+    const floatv begin_x = fma(to_floatv(rows), splat(view->skew_x), splat(view->first_x));
+    const floatv x = fma(to_floatv(columns), splat(view->step_x), begin_x);
     const floatv y = fma(to_floatv(rows), splat(view->step_y), splat(view->first_y));
     Block block;
     if (view->is_parallel) {
@@ -40,18 +61,16 @@ INLINE Block block_at(const GlowView *const view, const uint column, const uint 
     block.toward.x = block.slope_x * block.toward.z, block.toward.y = block.slope_y * block.toward.z;
     block.begin = view->near * block.per_z;
     block.end = block.begin + view->ray_length;
+    block.least_z = INFINITY;
     if (view->has_depth) {
         const floatv depth = gather(depths, as_intv(rows * view->width + columns));
-        block.end = min(block.end, view->is_along_axis ? depth * block.per_z : depth);
+        const floatv end = view->is_along_axis ? depth * block.per_z : depth;
+        block.end = min(block.end, end);
+        float ends[LANES];
+        scatter(end * inverse(block.per_z), ends);
+        for (uint lane = 0u; lane < LANES; ++lane)
+            block.least_z = fmin(block.least_z, 0.9999f * ends[lane]);
     }
-    const float across = 0.5f * (float)(BLOCK_COLUMNS - 1u), down = 0.5f * (float)(BLOCK_ROWS - 1u);
-    block.middle_x = fma((float)column + across, view->step_x, view->first_x);
-    block.middle_y = fma((float)row + down, view->step_y, view->first_y);
-    const float spread_x = across * view->step_x, spread_y = down * view->step_y;
-    block.spread = 1.001f * sqrt(fma(spread_x, spread_x, spread_y * spread_y)) + 1e-6f;
-    block.middle = normalize((float4)(block.middle_x, block.middle_y, 1.0f, 0.0f));
-    if (view->is_parallel)
-        block.middle = (float4)(0.0f, 0.0f, 1.0f, 0.0f);
     return block;
 }
 

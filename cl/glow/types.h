@@ -1,4 +1,4 @@
-// The structs of particles as light that cross from the host to the device; src/light/pack.rs mirrors them.
+// The structs of particles as light that cross from the host to the device; src/glow/pack.rs mirrors them.
 //
 // Positions are seen from the eye, along the axes of the picture: x to the right, y down, z along the view. A ray of an
 // eye leaves the axis by its slopes, a ray of parallel ones by an offset: x = x0 + slope z.
@@ -21,7 +21,8 @@ typedef struct {
     uint has_depth, is_along_axis; // whether depths end rays, and whether they are lengths along the axis of view
     uint tile;                     // pixels across and down in a tile
     uint tile_columns;
-    uint padding0, padding1;
+    float skew_x; // by which a ray lies more to the right than that above it
+    uint padding0;
 } GlowView;
 CHECK_SIZE(GlowView, SIZEOF_GLOWVIEW);
 
@@ -33,6 +34,8 @@ typedef struct {
     uint form;
     float axis_x, axis_y, axis_z; // of a stretch: from its middle to its end
     float growth;                 // by which the radius is greater at that end than in the middle
+    float inverse_radius;
+    float padding0, padding1, padding2;
 } Element;
 CHECK_SIZE(Element, SIZEOF_ELEMENT);
 
@@ -41,3 +44,4 @@ CHECK_SIZE(Element, SIZEOF_ELEMENT);
 #define IS_STRETCH 2u    // no ball
 #define HAS_FIRST_CAP 4u // a stretch with half a ball at its begin,
 #define HAS_LAST_CAP 8u  // and at its end
+#define IS_CLEAR 16u     // a ball that no begin or end of rays cuts, and far from a decay's pole

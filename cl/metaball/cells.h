@@ -28,9 +28,12 @@ uint cell_at(const float place, const float inverse_width, const uint count) {
 // Says whether a position is more than a radius away from all rays: from the planes of the outermost.
 bool is_beside(const Sight *const sight, __global const Surface *const surface, const float3 p) {
     const float z = sight->is_parallel ? 1.0f : p.z;
-    const float2 first = (float2)(sight->first_x, sight->first_y);
-    const float2 last = fma((float2)(sight->step_x, sight->step_y),
-                            (float2)((float)(sight->width - 1u), (float)(sight->height - 1u)), first);
+    const float skew = (float)(sight->height - 1u) * sight->skew_x;
+    const float2 begin = (float2)(sight->first_x, sight->first_y);
+    const float2 first = begin + (float2)(min(skew, 0.0f), 0.0f);
+    const float2 last =
+        fma((float2)(sight->step_x, sight->step_y), (float2)((float)(sight->width - 1u), (float)(sight->height - 1u)),
+            begin + (float2)(max(skew, 0.0f), 0.0f));
     const float most = 1.0001f * surface->radius;
     const float2 before = first * z - p.xy, beyond = p.xy - last * z;
     const float2 at_first = sight->is_parallel ? (float2)(most) : most * sqrt(fma(first, first, 1.0f));
@@ -45,8 +48,8 @@ uint cell_of(const Sight *const sight, __global const Surface *const surface, __
         return NO_CELL;
     __global const Slab *const slab = slabs + surface->first_slab + slab_at(surface, p.z);
     const float scale = sight->is_parallel ? 1.0f : 1.0f / p.z; // a slab next to the eye has one cell
-    const float column = (p.x * scale - sight->first_x) / sight->step_x;
     const float row = (p.y * scale - sight->first_y) / sight->step_y;
+    const float column = (p.x * scale - fma(row, sight->skew_x, sight->first_x)) / sight->step_x;
     return slab->first_cell + cell_at(row, slab->inverse_width, slab->rows) * slab->columns +
            cell_at(column, slab->inverse_width, slab->columns);
 }
@@ -70,11 +73,14 @@ Block block_of(const Sight *const sight, const uint column, const uint row, cons
     if (sight->is_parallel)
         return block;
     const float2 first = (float2)(sight->first_x, sight->first_y), step = (float2)(sight->step_x, sight->step_y);
-    const float2 low = fma((float2)(block.left, block.top), step, first);
-    const float2 high = fma((float2)(block.right, block.bottom), step, first);
+    const float2 skew = sight->skew_x * (float2)(block.top, block.bottom);
+    const float2 low = fma((float2)(block.left, block.top), step, first + (float2)(min(skew.x, skew.y), 0.0f));
+    const float2 high = fma((float2)(block.right, block.bottom), step, first + (float2)(max(skew.x, skew.y), 0.0f));
     const float2 steepest = max(fabs(low), fabs(high));
     const float2 slant = sqrt(fma(steepest, steepest, 1.0f));
-    block.slant_x = slant.x, block.slant_y = slant.y;
+    // A column of rays that leans is seen at both slants.
+    block.slant_x = sight->skew_x == 0.0f ? slant.x : max(slant.x, slant.y);
+    block.slant_y = slant.y;
     block.steepest2 = dot(steepest, steepest);
     return block;
 }

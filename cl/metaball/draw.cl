@@ -81,10 +81,11 @@ Search search_of(const Sight *const sight, const Rays *const rays, const uint co
     search.block = block_of(sight, column, row, BLOCK_COLUMNS, BLOCK_ROWS);
     const Block *const block = &search.block;
     const float middle_column = 0.5f * (block->left + block->right), middle_row = 0.5f * (block->top + block->bottom);
-    search.middle_x = fma(middle_column, sight->step_x, sight->first_x);
+    search.middle_x = fma(middle_column, sight->step_x, fma(middle_row, sight->skew_x, sight->first_x));
     search.middle_y = fma(middle_row, sight->step_y, sight->first_y);
-    search.spread =
-        0.501f * hypot((block->right - block->left) * sight->step_x, (block->bottom - block->top) * sight->step_y);
+    const float rows = block->bottom - block->top, down = rows * sight->step_y;
+    const float across = fma(block->right - block->left, sight->step_x, rows * fabs(sight->skew_x));
+    search.spread = 0.501f * sqrt(fma(across, across, down * down));
     search.longest = sqrt(1.0f + block->steepest2);
     return search;
 }

@@ -27,22 +27,23 @@ floatv inverse_root(const floatv x) {
 }
 
 // Adds a particle's field at lengths s, and its bound up to `end`.
-INLINE void add_field(Sums *const sums, __global const Particle *const particle, const Near *const near,
-                      const uint place, const floatv s, const floatv end, const bool is_smooth) {
+INLINE void add_field(Sums *const sums, const Near *const near, const uint place, const floatv s, const floatv end,
+                      const bool is_smooth) {
     const floatv u = s - near->at[place];
     const floatv r2 = fma(u, u, near->d2[place]);
+    const float inverse_radius = near->inverse_radius[place], weight = near->weight[place];
     if (is_smooth) {
-        const float inverse2 = particle->inverse_radius * particle->inverse_radius;
+        const float inverse2 = inverse_radius * inverse_radius;
         const floatv left = max(fma(r2, splat(-inverse2), splat(1.0f)), splat(0.0f));
-        const floatv left2 = particle->weight * left * left;
+        const floatv left2 = weight * left * left;
         sums->field = fma(left2, left, sums->field);
         sums->slope = fma(left2 * u, splat(-6.0f * inverse2), sums->slope);
     } else {
-        const floatv inverse_r = inverse_root(r2);
-        const floatv left = max(fma(r2 * inverse_r, splat(-particle->inverse_radius), splat(1.0f)), splat(0.0f));
-        const floatv weighted = particle->weight * left;
+        const floatv twice_inverse_r = twice_inverse_sqrt_(max(r2, splat(TINY)));
+        const floatv left = max(fma(r2 * twice_inverse_r, splat(-0.5f * inverse_radius), splat(1.0f)), splat(0.0f));
+        const floatv weighted = weight * left;
         sums->field = fma(weighted, left, sums->field);
-        sums->slope = fma(weighted * u, inverse_r * (-2.0f * particle->inverse_radius), sums->slope);
+        sums->slope = fma(weighted * u, twice_inverse_r * -inverse_radius, sums->slope);
     }
     const intv meets = (near->leave[place] > s) & (near->enter[place] < end);
     sums->growth += select(splat(0.0f), near->growth[place], meets);
@@ -70,9 +71,8 @@ INLINE Sums field_along(const Search *const search, Window *const window, Near *
     for (bool has_part = first_part(search, window, near); has_part; has_part = next_part(search, window, near))
         for (uint number = 0u; number < near->count; ++number) {
             const uint place = (near->begin + number) % ROOM;
-            __global const Particle *const particle = search->particles + near->particle[place];
             COUNT(near->pairs, 1u);
-            add_field(&sums, particle, near, place, s, end, is_smooth);
+            add_field(&sums, near, place, s, end, is_smooth);
         }
     return sums;
 }

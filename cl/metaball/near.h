@@ -32,7 +32,8 @@ typedef struct {
 } Rays;
 
 Rays rays_at(const Sight *const sight, const uintv column, const uintv row) {
-    const floatv x = fma(to_floatv(column), splat(sight->step_x), splat(sight->first_x));
+    const floatv begin_x = fma(to_floatv(row), splat(sight->skew_x), splat(sight->first_x));
+    const floatv x = fma(to_floatv(column), splat(sight->step_x), begin_x);
     const floatv y = fma(to_floatv(row), splat(sight->step_y), splat(sight->first_y));
     Rays rays;
     if (sight->is_parallel) {
@@ -81,6 +82,7 @@ typedef struct {
     uint begin, count;
     uint of_slab[8];
     uint particle[ROOM];
+    float inverse_radius[ROOM], weight[ROOM];
     floatv at[ROOM], d2[ROOM];       // see Passing
     floatv enter[ROOM], leave[ROOM]; // where the rays come into its field, and leave it
     floatv growth[ROOM];             // the bound of its field's growth
@@ -136,6 +138,7 @@ INLINE void add_particle(const Search *const search, const uint number, Near *co
     const uint place = (near->begin + near->count) % ROOM;
     const floatv chord2 = max(particle->radius * particle->radius - it.d2, 0.0f), half_chord = sqrt(chord2);
     near->particle[place] = number;
+    near->inverse_radius[place] = particle->inverse_radius, near->weight[place] = particle->weight;
     near->at[place] = it.at, near->d2[place] = it.d2;
     near->enter[place] = it.at - half_chord, near->leave[place] = it.at + half_chord;
     const floatv share2 = min(it.d2 * (particle->inverse_radius * particle->inverse_radius), 1.0f);

@@ -19,7 +19,8 @@ typedef struct {
     uint depth_step;    // so many rays across and down have one depth
     uint span_columns;  // squares of rays of which the slabs are known that matter
     uint square;        // rays across and down in such a square
-    uint padding0, padding1;
+    float skew_x;       // by which a ray lies more to the right than that above it
+    uint padding0;
 } Sight;
 CHECK_SIZE(Sight, SIZEOF_SIGHT);
 

@@ -16,7 +16,9 @@ struct CollisionCell {
     particles: usize,
     /// Balls, or balls and streaks, that were drawn.
     sprites: usize,
+    /// Pixels across, and down.
     resolution: u32,
+    height: u32,
     method: &'static str,
     fps: f64,
     paper_fps: f64,
@@ -46,8 +48,8 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
             let found = known.measure(&mut renderer, shape, time(arguments))?;
             let scene = known.scene(shape, 0);
             let file = format!(
-                "collision-{}-{}-{method}.exr",
-                known.particles, known.samples
+                "collision-{}-{}-{}-{method}.exr",
+                known.particles, known.samples, scene.image.width
             );
             save(arguments, &file, &found.speed, &scene)?;
             let cell = CollisionCell {
@@ -55,6 +57,7 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
                 particles: found.particles,
                 sprites: found.elements,
                 resolution: scene.image.width,
+                height: scene.image.height,
                 method,
                 fps: found.speed.fps,
                 paper_fps: known.paper_fps,
@@ -78,14 +81,14 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
 fn print_cell(cell: &CollisionCell, is_first: bool) -> Outcome {
     if is_first {
         print(
-            "particles sprites resolution method        fps     paper   ratio  kernel ms  simulation ms\n",
+            "particles sprites      size method        fps     paper   ratio  kernel ms  simulation ms\n",
         )?;
     }
     print(&format!(
-        "{:>9} {:>7} {:>10} {:<8} {:>9.2} {:>9.2} {:>7.2} {:>10.3} {:>14.3}\n",
+        "{:>9} {:>7} {:>9} {:<8} {:>9.2} {:>9.2} {:>7.2} {:>10.3} {:>14.3}\n",
         cell.particles,
         cell.sprites,
-        cell.resolution,
+        format!("{}x{}", cell.resolution, cell.height),
         cell.method,
         cell.fps,
         cell.paper_fps,

@@ -25,11 +25,12 @@ pub(crate) use kernels::build_text;
 use pack::{Element, GlowView, Packed, Sight};
 use tiles::Tiles;
 
-/// Work-items in a group, which share nothing; of a CPU few enough that all cores are busy to the end.
-const GROUP: usize = 16;
+/// Work-items in a group, which share nothing: of a CPU few enough that all cores are busy to the end.
+const GROUP: usize = 2;
+const GPU_GROUP: usize = 32;
 
-/// Blocks of rays of a launch: desktop GPUs kill launches of seconds.
-const BLOCKS: u32 = 1 << 16;
+/// Units of rays of a launch: desktop GPUs kill launches of seconds.
+const UNITS: u32 = 1 << 16;
 
 /// The kernels and buffers of a device, which are kept from frame to frame.
 #[derive(Debug)]
@@ -55,6 +56,8 @@ struct Known {
     elements: u64,
     camera: Camera,
     image: ImageSize,
+    /// From the projection plane to the decay's pole, as [`Sight`] has it.
+    to_pole: Option<f64>,
 }
 
 /// What is to be drawn.
@@ -100,7 +103,7 @@ impl Glow {
     /// # Errors
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
     /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device);
-    /// [`Error::Unsupported`](crate::Error::Unsupported) for a camera with a shear.
+    /// [`Error::Unsupported`](crate::Error::Unsupported) for a camera with a shear along the view.
     pub(crate) fn plan(
         &mut self,
         compute: &Compute,
@@ -134,12 +137,14 @@ impl Glow {
             elements: scene.light_elements.revision(),
             camera: scene.camera.clone(),
             image: scene.image,
+            to_pole: sight.to_pole(),
         });
         let is_known = self.known == known;
         if !is_known {
             self.packed.pack(scene, &sight);
             let size = [scene.image.width, scene.image.height];
-            self.tiles.list(&self.packed.boxes, size);
+            let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
+            self.tiles.list(&self.packed.boxes, size, unit(lanes).0);
             self.known = known;
         }
         let (packed, tiles) = (&self.packed, &self.tiles);
@@ -183,30 +188,31 @@ impl Glow {
         };
         let view = &plan.view;
         let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
-        let (block_columns, block_rows) = block(lanes);
-        let across = view.width.div_ceil(block_columns);
-        let first = pixels.start / view.width / block_rows * across;
+        let (unit_columns, unit_rows) = unit(lanes);
+        let across = view.width.div_ceil(unit_columns);
+        let first = pixels.start / view.width / unit_rows * across;
         let rows = pixels.end.div_ceil(view.width);
-        let end = rows.div_ceil(block_rows) * across;
+        let end = rows.div_ceil(unit_rows) * across;
         let size = (view.width, view.height);
         let drawn = film.arguments(compute, &pixels, size, true, true)?;
         let depths: &dyn Argument = match &plan.depths {
             Some(memory) => memory,
             None => self.depths.argument(),
         };
-        for begin in (first..end).step_by(BLOCKS as usize) {
-            let stop = end.min(begin + BLOCKS);
+        for begin in (first..end).step_by(UNITS as usize) {
+            let stop = end.min(begin + UNITS);
             let mut arguments: Vec<(&str, &dyn Argument)> = vec![
                 ("view", view),
                 ("elements", &self.elements),
                 ("ends", &self.ends),
                 ("numbers", &self.numbers),
                 ("depths", depths),
-                ("first_block", &begin),
-                ("end_block", &stop),
+                ("first_unit", &begin),
+                ("end_unit", &stop),
             ];
             arguments.extend(drawn.named());
-            let group = kernel.group(compute, GROUP)?;
+            let wanted = if lanes == 1 { GPU_GROUP } else { GROUP };
+            let group = kernel.group(compute, wanted)?;
             let event = kernel.launch(compute, &arguments, (stop - begin) as usize, group)?;
             self.under_way.push(event);
         }
@@ -234,12 +240,12 @@ impl Glow {
     }
 }
 
-/// Returns the columns and rows of a block of rays, as `cl/block.h` has them.
-fn block(lanes: u32) -> (u32, u32) {
+/// Returns the columns and rows of a unit of rays, as `cl/block.h` and `cl/glow/near.h` have them: 4 by 4 blocks.
+fn unit(lanes: u32) -> (u32, u32) {
     match lanes {
-        16 => (4, 4),
-        8 => (4, 2),
-        4 => (2, 2),
+        16 => (16, 16),
+        8 => (16, 8),
+        4 => (8, 8),
         _ => (1, 1),
     }
 }

@@ -31,14 +31,14 @@ device_struct! {
         is_along_axis: u32 = 60,
         tile: u32 = 64,
         tile_columns: u32 = 68,
-        padding0: u32 = 72,
-        padding1: u32 = 76,
+        skew_x: f32 = 72,
+        padding0: u32 = 76,
     }
 }
 
 device_struct! {
     /// A ball, or a stretch of a streak.
-    Element [48] {
+    Element [64] {
         x: f32 = 0,
         y: f32 = 4,
         z: f32 = 8,
@@ -51,6 +51,10 @@ device_struct! {
         axis_y: f32 = 36,
         axis_z: f32 = 40,
         growth: f32 = 44,
+        inverse_radius: f32 = 48,
+        padding0: f32 = 52,
+        padding1: f32 = 56,
+        padding2: f32 = 60,
     }
 }
 
@@ -63,6 +67,10 @@ const IS_SMOOTH: u32 = 1;
 const IS_STRETCH: u32 = 2;
 const HAS_FIRST_CAP: u32 = 4;
 const HAS_LAST_CAP: u32 = 8;
+const IS_CLEAR: u32 = 16;
+
+/// Within this share of the way to a decay's pole moments tell enough, `MOMENTS_END` of `cl/glow/element.h`.
+const MOMENTS_END: f64 = 0.2;
 
 /// A streak shorter than this share of its radius is a ball.
 const SHORT: f64 = 1e-4;
@@ -80,21 +88,27 @@ pub(super) struct Sight {
     /// Slope, or offset, of the first pixel, and from one to the next.
     first: [f64; 2],
     step: [f64; 2],
+    /// By which a row begins farther to the right than that above it.
+    skew: f64,
     near: f64,
     ray_length: f64,
     is_parallel: bool,
     size: [u32; 2],
+    /// From the projection plane to the pole of the decay, infinite where nothing decays; `None`: light fades in a way
+    /// that moments do not tell.
+    to_pole: Option<f64>,
 }
 
 impl Sight {
     /// # Errors
-    /// [`Error::Unsupported`] if the picture's axes are not perpendicular to each other.
+    /// [`Error::Unsupported`] if the picture's axes are not perpendicular to the view.
     pub(super) fn new(scene: &Scene, plane: &ViewPlane) -> Result<Self> {
-        let (right, down) = (plane.column_step.normalize(), plane.row_step.normalize());
-        let leans = |a: DVec3, b: DVec3| a.dot(b).abs() > 1e-6;
-        if leans(right, down) || leans(right, plane.forward) || leans(down, plane.forward) {
-            let message = "particles are drawn by cameras whose rows and columns are perpendicular to each other and \
-                to the view; this projection has a shear";
+        let right = plane.column_step.normalize();
+        let down = (plane.row_step - plane.row_step.dot(right) * right).normalize();
+        let leans = |axis: DVec3| axis.dot(plane.forward).abs() > 1e-6;
+        if leans(right) || leans(down) {
+            let message = "particles are drawn by cameras whose rows and columns are perpendicular to the view; this \
+                projection has a shear along it";
             return Err(Error::Unsupported(message.to_owned()));
         }
         let scale = match plane.is_parallel {
@@ -107,11 +121,16 @@ impl Sight {
             down,
             forward: plane.forward,
             first: [right, down].map(|axis| scale * plane.first_pixel.dot(axis)),
-            step: [plane.column_step, plane.row_step].map(|step| scale * step.length()),
+            step: [
+                scale * plane.column_step.length(),
+                scale * plane.row_step.dot(down),
+            ],
+            skew: scale * plane.row_step.dot(right),
             near: plane.near,
             ray_length: plane.ray_length,
             is_parallel: plane.is_parallel,
             size: [scene.image.width, scene.image.height],
+            to_pole: to_pole(scene, plane),
         })
     }
 
@@ -134,6 +153,7 @@ impl Sight {
             beta: decay.map_or(0.0, |decay| decay.beta * self.ray_length) as f32,
             per_length: decay.map_or(0.0, |_| 1.0 / self.ray_length) as f32,
             absorbed: (kappa * LOG2_E) as f32,
+            skew_x: self.skew as f32,
             power: decay.map_or(0, |decay| decay.power),
             width: self.size[0],
             height: self.size[1],
@@ -153,6 +173,25 @@ impl Sight {
         DVec3::new(v.dot(self.right), v.dot(self.down), v.dot(self.forward))
     }
 
+    pub(super) fn to_pole(&self) -> Option<f64> {
+        self.to_pole
+    }
+
+    /// Returns whether all chords of a ball lie on the rays, and far enough from the decay's pole.
+    fn is_clear(&self, center: DVec3, radius: f64) -> bool {
+        let (front, reach) = (center.z - radius, 1.0001 * radius);
+        let end = self.near + self.ray_length;
+        let last = match self.is_parallel {
+            true => center.z,
+            false => center.length(),
+        };
+        self.to_pole.is_some_and(|to_pole| {
+            front >= self.near + 1e-4 * radius
+                && last + reach <= end
+                && reach <= MOMENTS_END * (to_pole + front - self.near)
+        })
+    }
+
     /// Returns the pixels whose rays may come into a ball, as a range of columns and one of rows; `None`: none.
     fn cover(&self, center: DVec3, radius: f64) -> Option<[[f64; 2]; 2]> {
         if center.z + radius <= self.near {
@@ -170,9 +209,26 @@ impl Sight {
                     ((place * z - root) / square, (place * z + root) / square)
                 }
             };
-            [low, high].map(|at| (at - self.first[axis]) / self.step[axis])
+            [low, high].map(|at| at - self.first[axis])
         };
-        Some([across(0), across(1)])
+        let rows = across(1).map(|at| at / self.step[1]);
+        let [left, right] = across(0);
+        let [one, other] = match self.skew {
+            0.0 => [0.0; 2],
+            skew => rows.map(|row| row * skew),
+        };
+        let columns = [left - one.max(other), right - one.min(other)];
+        Some([columns.map(|at| at / self.step[0]), rows])
+    }
+}
+
+fn to_pole(scene: &Scene, plane: &ViewPlane) -> Option<f64> {
+    let is_absorbed = scene.absorption.is_some_and(|it| it.kappa > 0.0);
+    let decay = scene.decay.filter(|decay| decay.power > 0);
+    match decay {
+        _ if is_absorbed => None,
+        None => Some(f64::INFINITY),
+        Some(decay) => (decay.power == 2).then_some(decay.beta * plane.ray_length),
     }
 }
 
@@ -217,7 +273,12 @@ impl Packed {
             return;
         };
         if let Some(pixels) = PixelBox::new(cover, sight.size) {
-            self.add(pixels, center, radius, light, form);
+            let clear = if sight.is_clear(center, radius) {
+                IS_CLEAR
+            } else {
+                0
+            };
+            self.add(pixels, center, radius, light, form | clear);
         }
     }
 
@@ -231,6 +292,7 @@ impl Packed {
             y: center.y as f32,
             z: center.z as f32,
             radius: radius as f32,
+            inverse_radius: (1.0 / radius) as f32,
             red: light.x as f32,
             green: light.y as f32,
             blue: light.z as f32,

@@ -5,6 +5,7 @@ use crate::opencl::{SHARED, SourceFile, Sources, embed};
 const FILES: &[SourceFile<'static>] = embed!(
     "glow/element.h",
     "glow/glow.cl",
+    "glow/near.h",
     "glow/rays.h",
     "glow/types.h",
 );

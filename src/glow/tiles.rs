@@ -105,9 +105,9 @@ pub(super) struct Tiles {
 }
 
 impl Tiles {
-    /// Lists the particles of every tile of an image.
-    pub(super) fn list(&mut self, boxes: &[PixelBox], [width, height]: [u32; 2]) {
-        self.size = size_for(boxes);
+    /// Lists the particles of every tile of an image; tiles are no smaller than a unit of rays is wide.
+    pub(super) fn list(&mut self, boxes: &[PixelBox], [width, height]: [u32; 2], unit: u32) {
+        self.size = size_for(boxes, unit.max(LEAST));
         self.columns = width.div_ceil(self.size);
         let (tile, columns) = (self.size, self.columns);
         self.ends.clear();
@@ -132,7 +132,7 @@ impl Tiles {
 }
 
 /// Returns the smallest tile for which the lists are not too long.
-fn size_for(boxes: &[PixelBox]) -> u32 {
+fn size_for(boxes: &[PixelBox], least: u32) -> u32 {
     let most = ENTRIES * boxes.len() as f64 + 4096.0;
     let entries = |tile: u32| {
         let of = |pixels: &PixelBox| {
@@ -142,7 +142,7 @@ fn size_for(boxes: &[PixelBox]) -> u32 {
         };
         boxes.iter().map(of).sum::<f64>()
     };
-    let mut tile = LEAST;
+    let mut tile = least;
     while tile < MOST && entries(tile) > most {
         tile *= 2;
     }
@@ -163,7 +163,7 @@ mod tests {
         let cover = |x: f64, y: f64| [[x - 2.0, x + 2.0], [y - 2.0, y + 2.0]];
         boxes.extend(PixelBox::around(cover(3.0, 4.0), cover(90.0, 50.0), size));
         let mut tiles = Tiles::default();
-        tiles.list(&boxes, size);
+        tiles.list(&boxes, size, 1);
         assert_eq!(*tiles.ends.last().unwrap() as usize, tiles.numbers.len());
         let mut begin = 0;
         for (tile, &end) in tiles.ends.iter().enumerate() {

@@ -126,7 +126,7 @@ impl Surfaces {
     /// # Errors
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
     /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device);
-    /// [`Error::Unsupported`](crate::Error::Unsupported) for a camera with a shear.
+    /// [`Error::Unsupported`](crate::Error::Unsupported) for a camera with a shear along the view.
     pub(crate) fn draw(
         &mut self,
         compute: &Compute,

@@ -25,8 +25,8 @@ device_struct! {
         depth_step: u32 = 92,
         span_columns: u32 = 96,
         square: u32 = 100,
-        padding0: u32 = 104,
-        padding1: u32 = 108,
+        skew_x: f32 = 104,
+        padding0: u32 = 108,
 
     }
 }

@@ -41,14 +41,15 @@ pub(super) struct Plan {
 /// Returns the grid of so many rays across a pixel, of which a work-item carries as many side by side as it has lanes.
 ///
 /// # Errors
-/// [`Error::Unsupported`] if the picture's axes are not perpendicular to each other.
+/// [`Error::Unsupported`] if the picture's axes are not perpendicular to the view.
 pub(super) fn sight(scene: &Scene, across: u32, lanes: u32) -> Result<(Sight, ViewPlane)> {
     let (grid, plane) = scene.ray_grid(across);
-    let (right, down) = (plane.column_step.normalize(), plane.row_step.normalize());
-    let leans = |a: DVec3, b: DVec3| a.dot(b).abs() > 1e-6;
-    if leans(right, down) || leans(right, plane.forward) || leans(down, plane.forward) {
-        let message = "metaballs are drawn by cameras whose rows and columns are perpendicular to each other and to \
-            the view; this projection has a shear";
+    let right = plane.column_step.normalize();
+    let down = (plane.row_step - plane.row_step.dot(right) * right).normalize();
+    let leans = |axis: DVec3| axis.dot(plane.forward).abs() > 1e-6;
+    if leans(right) || leans(down) {
+        let message = "metaballs are drawn by cameras whose rows and columns are perpendicular to the view; this \
+            projection has a shear along it";
         return Err(Error::Unsupported(message.to_owned()));
     }
     let scale = if plane.is_parallel {
@@ -81,7 +82,8 @@ pub(super) fn sight(scene: &Scene, across: u32, lanes: u32) -> Result<(Sight, Vi
             first_x: (scale * plane.first_pixel.dot(right)) as f32,
             first_y: (scale * plane.first_pixel.dot(down)) as f32,
             step_x: (scale * plane.column_step.length()) as f32,
-            step_y: (scale * plane.row_step.length()) as f32,
+            step_y: (scale * plane.row_step.dot(down)) as f32,
+            skew_x: (scale * plane.row_step.dot(right)) as f32,
             width: grid.width,
             height: grid.height,
             across,
@@ -181,13 +183,17 @@ impl Plan {
                 true => (f64::from(rays) / width).ceil() as u32 + 2,
                 false => 1,
             };
+            let [beside_x, beside_y] = [sight.step_x, sight.step_y]
+                .map(|it| WIDER * rays.unwrap_or(0.0) * step / f64::from(it));
+            // Rows above and below begin elsewhere.
+            let leaning = f64::from(sight.skew_x.abs() / sight.step_x);
             let slab = Slab {
                 first_cell: self.cell_count,
                 columns: cells(sight.width),
                 rows: cells(sight.height),
                 inverse_width: (1.0 / width) as f32,
-                beside_x: (WIDER * rays.unwrap_or(0.0) * step / f64::from(sight.step_x)) as f32,
-                beside_y: (WIDER * rays.unwrap_or(0.0) * step / f64::from(sight.step_y)) as f32,
+                beside_x: (beside_x + leaning * beside_y) as f32,
+                beside_y: beside_y as f32,
             };
             self.cell_count = self.cell_count.saturating_add(slab.columns * slab.rows);
             self.slabs.push(slab);

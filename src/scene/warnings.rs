@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::kinds::for_each_kind;
 use super::source::Core;
-use super::{Scene, SourceKind};
+use super::{Collider, ColliderShape, Scene, SourceKind};
 use crate::error::SceneError;
 
 /// A view of at most so many degrees may have been meant in radians, of which half a turn has 3.1.
@@ -89,6 +89,7 @@ impl Scene {
             .chain(dark)
             .chain(self.no_particles())
             .chain(self.nothing_to_light())
+            .chain(self.open_collider())
             .collect()
     }
 
@@ -158,6 +159,19 @@ impl Scene {
             let message = "lights meshes, and there is no [[mesh]]: add one, or leave it out";
             SceneError::value("lighting", message)
         })
+    }
+
+    /// Says that waves meet a mesh which has no inside.
+    fn open_collider(&self) -> Option<SceneError> {
+        let is_open = |collider: &Collider| match &collider.shape {
+            ColliderShape::Mesh(mesh) => !mesh.triangles.is_closed(),
+            _ => false,
+        };
+        let index = self.colliders.iter().position(is_open)?;
+        let message = "its mesh is open, so that it has no inside: particles turn back from the side of a triangle that \
+            they come from, and those that come through a gap are not pushed out; close its edges";
+        let is_met = !self.waves.is_empty();
+        is_met.then(|| SceneError::value(format!("collider[{index}].mesh"), message))
     }
 
     /// Says that nothing glows.

@@ -11,6 +11,7 @@ mod distances; // compares the distance to every kind of core with float64
 mod film; // lets a second engine add its light to the wave's
 mod hidden; // sends rays through edges and corners of a closed mesh
 mod layout; // finds every field of every device struct by its name
+mod same_states; // simulates on one device and on two what hits a mesh
 mod sanitizer; // runs every kernel on every lane width, small enough for a simulator
 mod several_devices; // draws one frame on several devices
 mod splits; // cuts a frame into launches in every way

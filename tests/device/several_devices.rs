@@ -17,7 +17,7 @@ use glam::DVec3;
 use serde_json::Value;
 
 /// PoCL shows its CPU as often as it is told to, to a whole process.
-const POCL_DEVICES: (&str, &str) = ("POCL_DEVICES", "pthread pthread pthread");
+pub const POCL_DEVICES: (&str, &str) = ("POCL_DEVICES", "pthread pthread pthread");
 
 /// Three devices of the kind under test; elsewhere one device thrice, with a context and a queue each.
 fn devices() -> &'static [Device] {
@@ -35,7 +35,7 @@ fn devices() -> &'static [Device] {
     &FOUND
 }
 
-fn on(count: usize) -> Renderer {
+pub fn on(count: usize) -> Renderer {
     Renderer::on_devices(&devices()[..count], &RendererOptions::default()).unwrap()
 }
 
@@ -58,7 +58,7 @@ fn ring(width: u32, height: u32, sampling: Option<Sampling>) -> Scene {
 }
 
 /// The values of a frame by each way to draw it.
-fn draw(renderer: &mut Renderer, scene: &Scene, way: usize) -> Vec<f32> {
+pub fn draw(renderer: &mut Renderer, scene: &Scene, way: usize) -> Vec<f32> {
     let row = 4 * scene.image.width as usize;
     let mut values = vec![-7.0; row * scene.image.height as usize];
     match way {

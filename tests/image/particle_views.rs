@@ -49,6 +49,15 @@ fn cameras(eye: DVec3) -> Vec<(&'static str, Camera)> {
             ),
         ),
         (
+            "sheared",
+            matrices(
+                view,
+                DMat4::from_cols_array(&[
+                    1.0, 0.0, 0.0, 0.0, 0.35, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+                ]) * rhp::vulkan::perspective(0.6, aspect, 0.3, 40.0),
+            ),
+        ),
+        (
             "parallel",
             matrices(
                 view,

@@ -201,3 +201,31 @@ fn a_scene_of_waves_alone_is_no_dark_one() {
     let scene = Scene::from_toml(&format!("{CAMERA}{SPLASH}")).unwrap();
     assert_eq!(scene.warnings(), []);
 }
+
+#[test]
+fn an_open_mesh_that_waves_hit_is_told_of() {
+    let wave = "[camera]\neye = [0, -9, 1]\ntarget = [0, 0, 0]\n[[wave]]\norigin = [-9, 0, 0]\ndirection = [1, 0, 0]\n";
+    let mesh = |triangles: &str| {
+        let corners = "[[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]]";
+        let keys = format!("vertices = {corners}, triangles = {triangles}");
+        format!("{wave}[[collider]]\nmesh = {{ {keys} }}\n")
+    };
+    let warnings = |text: &str| {
+        let folder = Folder::new();
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, text).unwrap();
+        Scene::from_file_with_warnings(&path, |_, _| Ok(()))
+            .unwrap()
+            .1
+    };
+    let closed = "[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]";
+    assert!(warnings(&mesh(closed)).is_empty());
+    let found = warnings(&mesh("[[0, 2, 1], [0, 1, 3], [0, 3, 2]]"));
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].key, "collider[0].mesh");
+    let text = found[0].to_string();
+    assert!(
+        text.contains("scene.toml:8:") && text.contains("is open"),
+        "{text}"
+    );
+}
