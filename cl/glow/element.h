@@ -36,27 +36,33 @@ typedef struct {
     bool is_smooth;
 } Piece;
 
+// How a squared distance grows from where it is least: least2 + 2 tilt u + steepness u^2.
+typedef struct {
+    floatv least2, tilt, steepness;
+} Distances;
+
 INLINE floatv root(const floatv x) {
     return 0.5f * x * twice_inverse_sqrt_(max(x, splat(TINY)));
 }
 
 // Sums a panel from `u` on, of this length, which may be negative.
-INLINE floatv panel(const GlowView *const view, const Piece *const piece, const floatv u, const floatv length) {
+INLINE floatv panel(const GlowView *const view, const Piece *const piece, const Distances *const distances,
+                    const floatv u, const floatv length) {
     floatv sum = splat(0.0f);
     const bool fades = view->power > 0u || view->absorbed > 0.0f;
     for (uint node = 0u; node < NODES; ++node) {
         const floatv at = fma(length, splat(NODE[node]), u);
-        const float3v way = fma3(piece->step, at, piece->from);
-        const floatv r2 = dot3(way, way);
+        // All terms are positive, as the ray leaves the core both ways from where it is closest.
+        const floatv r2 = fma(fma(distances->steepness, at, 2.0f * distances->tilt), at, distances->least2);
         const floatv h = fma(piece->slope, at, piece->h);
-        // 1 - r/h without cancellation at the rim.
-        const floatv r = root(r2), left = (h - r) * (h + r);
+        const floatv per_h = inverse(max(h, splat(TINY)));
         floatv light;
         if (piece->is_smooth) {
-            const floatv share = max(left * inverse(max(h * h, splat(TINY))), splat(0.0f));
+            const floatv r = root(r2);
+            const floatv share = max((h - r) * (h + r) * per_h * per_h, splat(0.0f));
             light = share * share * share;
         } else {
-            const floatv share = max(left * inverse(max(h * (h + r), splat(TINY))), splat(0.0f));
+            const floatv share = max((h - root(r2)) * per_h, splat(0.0f));
             light = share * share;
         }
         if (fades)
@@ -67,7 +73,8 @@ INLINE floatv panel(const GlowView *const view, const Piece *const piece, const 
 }
 
 // Sums from `from` to `to` by as many panels as the decay asks for.
-INLINE floatv panels(const GlowView *const view, const Piece *const piece, const floatv from, const floatv to) {
+INLINE floatv panels(const GlowView *const view, const Piece *const piece, const Distances *const distances,
+                     const floatv from, const floatv to) {
     floatv sum = splat(0.0f), at = from;
     intv goes_on = to != from;
     while (any_lane(goes_on)) {
@@ -81,7 +88,7 @@ INLINE floatv panels(const GlowView *const view, const Piece *const piece, const
             const float most = 3.0f / view->absorbed;
             next = clamp(next, at - most, at + most);
         }
-        const floatv part = panel(view, piece, at, next - at);
+        const floatv part = panel(view, piece, distances, at, next - at);
         sum += select(splat(0.0f), part, goes_on);
         goes_on &= (next != to) & (next != at);
         at = next;
@@ -98,10 +105,11 @@ INLINE floatv piece_light(const GlowView *const view, Piece *const piece, floatv
     piece->h = fma(piece->slope, closest, piece->h);
     piece->behind += closest;
     low -= closest, high -= closest;
+    const Distances distances = {dot3(piece->from, piece->from), dot3(piece->from, piece->step), steepness};
     // Where the distance is the radius: a u^2 + 2 b u + c = 0.
     const floatv a = fma(-piece->slope, piece->slope, steepness);
-    const floatv b = fma(-piece->h, piece->slope, dot3(piece->from, piece->step));
-    const floatv c = fma(-piece->h, piece->h, dot3(piece->from, piece->from));
+    const floatv b = fma(-piece->h, piece->slope, distances.tilt);
+    const floatv c = fma(-piece->h, piece->h, distances.least2);
     const floatv inside = fma(b, b, -a * c);
     intv meets = (low < high) & (inside > 0.0f);
     if (!any_lane(meets))
@@ -121,7 +129,7 @@ INLINE floatv piece_light(const GlowView *const view, Piece *const piece, floatv
         return splat(0.0f);
     low = select(splat(0.0f), low, meets), high = select(splat(0.0f), high, meets);
     const floatv from = clamp(splat(0.0f), low, high);
-    return panels(view, piece, from, high) + panels(view, piece, from, low);
+    return panels(view, piece, &distances, from, high) + panels(view, piece, &distances, from, low);
 }
 
 // What a ray is to an element's middle.
