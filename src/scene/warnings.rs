@@ -168,8 +168,8 @@ impl Scene {
             _ => false,
         };
         let index = self.colliders.iter().position(is_open)?;
-        let message = "its mesh is open, so that it has no inside: particles turn back from the side of a triangle that \
-            they come from, and those that come through a gap are not pushed out; close its edges";
+        let message = "its mesh is open, so that it has no inside: particles turn back from the side that they \
+            come from, and those that come through a gap are not pushed out; close its edges";
         let is_met = !self.waves.is_empty();
         is_met.then(|| SceneError::value(format!("collider[{index}].mesh"), message))
     }
