@@ -18,9 +18,13 @@
 #define DOUBT 30.0f
 #define FIRST_ESTIMATE 0.25f
 
-// Newton steps to where light ends, and how fast a ray must come closer to it, of its length, to take one.
+// Newton steps to where light ends, how fast a ray must come closer to it, of its length, to take one, and which share
+// of the panel the last one goes: the next would go its square.
 #ifndef EDGE_STEPS
 #define EDGE_STEPS 8
+#endif
+#ifndef LAST_EDGE_STEP
+#define LAST_EDGE_STEP 1e-4f
 #endif
 #define LEAST_CLOSING 0.02f
 
@@ -198,27 +202,36 @@ INLINE uint KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
 #endif
 
 #if defined(SHAPES) && KIND_HAS(peaks_along)
-// Returns where light begins, or, seen from the other end of a panel (`turn` -1), where it ends: by Newton steps on the
-// distance to the core. One that goes where the ray draws away from the core may have passed over what is lit: in its
-// place comes a step as long as the distance to the light.
+// Returns where light begins, or, seen from the other end of a panel (`turn` -1), where it ends: by steps to where the
+// squared distance to the core, as a parabola, comes to that of the edge, or by Newton's where it does not. One that
+// goes where the ray draws away from the core may have passed over what is lit: in its place comes a step as long as
+// the distance to the light.
 INLINE floatv KIND_edge(const KIND_peaks *const peaks, const floatv from, const floatv to, const float turn) {
     const floatv length = 2.0f * peaks->ray->length, per_length = inverse(length);
-    const float end = sqrt(peaks->path.profile.end2);
+    const floatv last_step = LAST_EDGE_STEP * (to - from);
+    const float end2 = peaks->path.profile.end2, end = sqrt(end2);
     floatv s = turn > 0.0f ? from : to, safe = s, edge = s;
 #pragma unroll 1
     for (int step = 0; step < EDGE_STEPS; ++step) {
-        floatv slope;
-        const floatv distance2 = max(KIND_edge_distance2(peaks, s, &slope), 1e-30f);
-        const floatv per_distance = 0.5f * twice_inverse_sqrt_(distance2);
-        const floatv to_light = fma(distance2, per_distance, splat(-end));
-        const floatv closing = -0.5f * turn * slope * per_distance;
-        const intv is_closing = closing > LEAST_CLOSING * length;
+        floatv slope, half_curvature;
+        const floatv distance2 = max(KIND_edge_distance2(peaks, s, &slope, &half_curvature), 1e-30f);
+        const floatv distance = 0.5f * twice_sqrt(distance2), left2 = distance2 - end2;
+        const floatv closing = -0.5f * turn * slope;
+        const intv is_closing = closing > LEAST_CLOSING * length * distance;
         const intv is_there = is_closing | (s == safe);
-        const floatv short_step = fma(turn * max(to_light, 0.0f), per_length, s);
-        const floatv newton = fma(turn * to_light, inverse(max(closing, 1e-30f)), s);
-        edge = select(edge, select(newton, s, to_light > 0.0f), is_there);
+        const floatv bend = fma(-half_curvature, left2, closing * closing);
+        const floatv root = 0.5f * twice_sqrt(max(bend, 1e-36f));
+        floatv ahead = (distance - end) * distance * inverse(max(closing, 1e-30f));
+        ahead = select(ahead, left2 * inverse(max(closing + root, 1e-30f)), bend > 0.0f);
+        const floatv short_step = fma(turn * max(distance - end, 0.0f), per_length, s);
+        const floatv there = fma(splat(turn), ahead, s);
+        edge = select(edge, select(there, s, left2 > 0.0f), is_there);
         safe = clamp(select(safe, short_step, is_there), from, to);
-        s = clamp(select(safe, newton, is_closing), from, to);
+        const floatv next = clamp(select(safe, there, is_closing), from, to);
+        const intv is_moving = fabs(next - s) > last_step;
+        s = next;
+        if (!any_lane(is_moving))
+            break;
     }
     return clamp(edge, from, to);
 }

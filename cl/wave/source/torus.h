@@ -130,9 +130,9 @@ INLINE torus_peaks torus_peaks_along(const Ray *const ray, const Sources *const 
 }
 
 #ifdef SHAPES
-INLINE floatv torus_edge_distance2(const torus_peaks *const peaks, const floatv s, floatv *const slope) {
-    floatv half_curvature;
-    return torus_offset2(&peaks->path, s, slope, &half_curvature);
+INLINE floatv torus_edge_distance2(const torus_peaks *const peaks, const floatv s, floatv *const slope,
+                                   floatv *const half_curvature) {
+    return torus_offset2(&peaks->path, s, slope, half_curvature);
 }
 #endif
 

@@ -111,8 +111,10 @@ CALL_IF_SCALAR curve_peaks curve_peaks_along(const Ray *const ray, const Sources
 }
 
 #ifdef SHAPES
-// Returns the squared distance at s, without softening, and its slope there.
-INLINE floatv curve_edge_distance2(const curve_peaks *const peaks, const floatv s, floatv *const slope) {
+// Returns the squared distance at s, without softening, its slope there, and half of its curvature, or more: as if the
+// nearest point stayed where it is.
+INLINE floatv curve_edge_distance2(const curve_peaks *const peaks, const floatv s, floatv *const slope,
+                                   floatv *const half_curvature) {
     const curve_path *const path = &peaks->path;
     const curve_point point = curve_point_at(path, s);
     floatv distance2;
@@ -120,6 +122,7 @@ INLINE floatv curve_edge_distance2(const curve_peaks *const peaks, const floatv 
     const curve_offset offset = offset_from_curve(path, &point, x);
     *slope = 2.0f * fma(offset.along, path->along.slope,
                         fma(offset.across, path->across.slope, point.normal * path->normal.slope));
+    *half_curvature = peaks->span2;
     return distance2;
 }
 #endif
