@@ -16,7 +16,7 @@ pub struct Rule {
 
 /// The least tolerance for which a rule serves, and the rule: `cargo bench --bench rules` shows what each is good for.
 const RULES: [(f64, Rule); 5] = [
-    (1e-2, rule(8, 1e-1, 1e-3)),
+    (1e-2, rule(8, 1e-1, 3e-3)),
     (1e-3, rule(8, 2e-3, 2e-4)),
     (1e-4, rule(10, 5e-5, 2e-5)),
     (1e-5, rule(10, 1e-5, 5e-6)),
