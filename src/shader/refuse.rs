@@ -63,8 +63,8 @@ fn refuse_source(source: &impl SourceKind, key: &str) -> Result<()> {
 /// Says that a key has no form.
 pub(super) fn no_form(key: impl Into<String>, what: &str) -> Error {
     let message = format!(
-        "{what} has no form in shaders, which have point, line, segment, beam, ring, curve and polyline with powers of 1/d \
-         or a Gaussian: export a scene without it, or give the engine a baked volume"
+        "{what} has no form in shaders, which have point, line, segment, beam, ring, curve and polyline with powers of \
+         1/d or a Gaussian: export a scene without it, or give the engine a baked volume"
     );
     SceneError::value(key, message).into()
 }

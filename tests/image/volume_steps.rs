@@ -20,7 +20,7 @@ fn a_kernel_with_wrong_points_of_long_steps_is_found_out() {
     assert_eq!(error.kind(), ErrorKind::SelfTest, "{error}");
 }
 
-/// Makes light around a ring and a point, dark beyond a plane.
+/// Makes light around a ring and a point; of emission, dark beyond a plane.
 fn ring(cells: [u32; 3], storage: Storage, channels: u32) -> Texture {
     let plane: u32 = cells.iter().product();
     let light = |index: u32| {
@@ -36,11 +36,13 @@ fn ring(cells: [u32; 3], storage: Storage, channels: u32) -> Texture {
         let to_point = at.distance(DVec3::new(0.1, 0.2, 0.4));
         let light =
             1.0 / to_ring.hypot(0.06) + (1.0 + 0.3 * f64::from(channel)) / to_point.hypot(0.06);
-        storage.stored(if cell[1] >= cells[1] * 3 / 4 {
-            0.0
-        } else {
-            light as f32
-        })
+        storage.stored(
+            if storage == Storage::Emission && cell[1] >= cells[1] * 3 / 4 {
+                0.0
+            } else {
+                light as f32
+            },
+        )
     };
     Texture::new(cells, (0..channels * plane).map(light).collect(), storage).unwrap()
 }
