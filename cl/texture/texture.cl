@@ -3,121 +3,27 @@
 // places are those where it meets planes perpendicular to the view, at equal distances within the ball around the box.
 #include "../film.h"
 #include "../roots.h"
+#include "cells.h"
 #include "types.h"
 
 // Places of a piece of a ray at which the quadratic through three reciprocals is summed.
 #define PLACES 16
 
+// Cells along an edge of a brick; pieces that are taken together.
+#define BRICK 8u
+
+// What light may fade over the length of a brick where two points stand for it.
+#define MOST_FADING 0.5f
+
+// Where the first of two points of Gauss and Legendre is, of 0 to 2.
+#ifndef FIRST_POINT
+#define FIRST_POINT 0.42264973f
+#endif
+
 // Where the middle of a piece is.
 #ifndef MIDDLE
 #define MIDDLE 0.5f
 #endif
-
-// The cells of a channel, and a place among them: 0 is the middle of the first.
-typedef struct {
-    const TextureVolume *volume;
-    __global const float *values;
-} Cells;
-
-// Along an axis: the first of the cells around a place, in the grid, and what the next ones weigh.
-INLINE floatv first_of(const floatv place, const uint count, const uint around) {
-    const float last = count > around ? (float)(count - around) : 0.0f;
-    return clamp(floor(place) - (float)(around / 2u - 1u), splat(0.0f), splat(last));
-}
-
-// How far from its first cell each further one is along an axis whose cells are `stride` apart: the grid may be
-// smaller.
-INLINE uint apart(const uint number, const uint count, const uint stride) {
-    return min(number, count - 1u) * stride;
-}
-
-INLINE intv first_cell(const TextureVolume *const volume, const floatv x, const floatv y, const floatv z) {
-    const intv sheet = to_intv_down(z) * (int)volume->sheet;
-    return sheet + to_intv_down(y) * (int)volume->line + to_intv_down(x);
-}
-
-// Returns what is between a cell and the next one along x.
-INLINE floatv mix_pair(const uint columns, __global const float *const values, const intv first, const floatv fx) {
-    floatv low, high;
-    if (columns > 1u)
-        gather_pairs(values, first, &low, &high);
-    else
-        low = high = gather(values, first);
-    return fma(fx, high - low, low);
-}
-
-INLINE floatv mix_lines(const Cells *const cells, const intv first, const floatv fx, const floatv fy, const uint up) {
-    const uint columns = cells->volume->columns;
-    const floatv low = mix_pair(columns, cells->values, first, fx);
-    return fma(fy, mix_pair(columns, cells->values + up, first, fx) - low, low);
-}
-
-INLINE floatv linear_at(const Cells *const cells, const float3v place) {
-    const TextureVolume *const volume = cells->volume;
-    const uint columns = volume->columns, rows = volume->rows, layers = volume->layers;
-    const floatv x = first_of(place.x, columns, 2u), y = first_of(place.y, rows, 2u), z = first_of(place.z, layers, 2u);
-    // Beyond the middles of the outermost cells it is theirs.
-    const floatv fx = clamp(place.x - x, splat(0.0f), splat(1.0f));
-    const floatv fy = clamp(place.y - y, splat(0.0f), splat(1.0f));
-    const floatv fz = clamp(place.z - z, splat(0.0f), splat(1.0f));
-    const intv first = first_cell(volume, x, y, z);
-    const uint up = apart(1u, rows, volume->line), on = apart(1u, layers, volume->sheet);
-    const floatv near = mix_lines(cells, first, fx, fy, up);
-    const Cells farther = {volume, cells->values + on};
-    return fma(fz, mix_lines(&farther, first, fx, fy, up) - near, near);
-}
-
-// Returns the four weights of Catmull and Rom for the cells from the first on. At the grid's faces those beyond it are
-// the outermost, whose weights add.
-INLINE void weigh(const floatv place, const floatv first, const uint count, floatv *const weights) {
-    const floatv x = floor(place), f = place - x, f2 = f * f, f3 = f2 * f;
-    weights[0] = -0.5f * f3 + f2 - 0.5f * f;
-    weights[1] = 1.5f * f3 - 2.5f * f2 + 1.0f;
-    weights[2] = -1.5f * f3 + 2.0f * f2 + 0.5f * f;
-    weights[3] = 0.5f * (f3 - f2);
-    if (!any_lane((x - 1.0f != first) | (first + 3.0f > (float)(count - 1u))))
-        return;
-    floatv moved[4] = {splat(0.0f), splat(0.0f), splat(0.0f), splat(0.0f)};
-    for (int i = 0; i < 4; ++i) {
-        const floatv cell = clamp(x + (float)(i - 1), splat(0.0f), splat((float)(count - 1u))) - first;
-        for (int j = 0; j < 4; ++j)
-            moved[j] += select(splat(0.0f), weights[i], cell == (float)j);
-    }
-    for (int j = 0; j < 4; ++j)
-        weights[j] = moved[j];
-}
-
-INLINE floatv cubic_at(const Cells *const cells, const float3v place) {
-    const TextureVolume *const volume = cells->volume;
-    const uint columns = volume->columns, rows = volume->rows, layers = volume->layers;
-    const floatv x = first_of(place.x, columns, 4u), y = first_of(place.y, rows, 4u), z = first_of(place.z, layers, 4u);
-    floatv wx[4], wy[4], wz[4];
-    weigh(place.x, x, columns, wx), weigh(place.y, y, rows, wy), weigh(place.z, z, layers, wz);
-    const intv first = first_cell(volume, x, y, z);
-    floatv sum = splat(0.0f);
-    for (uint k = 0; k < 4u; ++k) {
-        floatv sheet = splat(0.0f);
-#pragma unroll
-        for (uint j = 0; j < 4u; ++j) {
-            const uint offset = apart(k, layers, volume->sheet) + apart(j, rows, volume->line);
-            __global const float *const row = cells->values + offset;
-            floatv a, b, c, d;
-            if (columns > 3u)
-                gather_pairs(row, first, &a, &b), gather_pairs(row + 2, first, &c, &d);
-            else {
-                a = gather(row, first), b = gather(row + apart(1u, columns, 1u), first);
-                c = gather(row + apart(2u, columns, 1u), first), d = splat(0.0f);
-            }
-            sheet = fma(wy[j], fma(wx[0], a, fma(wx[1], b, fma(wx[2], c, wx[3] * d))), sheet);
-        }
-        sum = fma(wz[k], sheet, sum);
-    }
-    return sum;
-}
-
-INLINE floatv stored_at(const Cells *const cells, const float3v place) {
-    return cells->volume->is_cubic ? cubic_at(cells, place) : linear_at(cells, place);
-}
 
 // Returns the emission that is stored so.
 INLINE floatv emission_of(const TextureVolume *const volume, const floatv stored) {
@@ -220,6 +126,8 @@ INLINE Course course_of(const TextureView *const view, const TextureVolume *cons
     }
     const floatv cells = chord * sqrt(dot3(course.span, course.span));
     *count = min(ceil(cells * (1.0f / volume->step)), 65536.0f);
+    if (volume->has_bricks)
+        *count = (float)BRICK * ceil(*count * (1.0f / BRICK));
     course.begin = course.low, course.step = chord / max(*count, 1.0f);
     return course;
 }
@@ -232,52 +140,161 @@ INLINE float most_of(const floatv value) {
     return most;
 }
 
-__kernel void draw_texture(const FilmPart part, const TextureView view, const TextureVolume volume,
-                           __global const float *const restrict values, __global const float *const restrict depths,
-                           FILM_PARAMETER) {
+// What of a ray is summed.
+typedef struct {
+    const TextureView *view;
+    const TextureVolume *volume;
+    __global const float *values, *coarse, *bricks;
+    Course course;
+    floatv count;
+    float3v sum;
+    floatv fars[3]; // of reciprocals, at the far end of the next piece
+    bool are_there;
+} March;
+
+INLINE void add_light(March *const march, const uint channel, const floatv it) {
+    const bool is_grey = march->volume->channels == 1u;
+    march->sum.x += channel == 0u ? it : splat(0.0f);
+    march->sum.y += channel == 1u || is_grey ? it : splat(0.0f);
+    march->sum.z += channel == 2u || is_grey ? it : splat(0.0f);
+}
+
+// Adds the light of a piece of every ray.
+INLINE void add_piece(March *const march, const uint number AND_VALUES) {
+    const TextureVolume *const volume = march->volume;
+    const Course *const course = &march->course;
+    const floatv middle = fma(splat((float)number + MIDDLE), course->step, course->begin);
+    const intv is_outside = ((float)number >= march->count) | (middle < course->low) | (middle > course->high);
+    const floatv left = select(course->step * left_after(march->view, middle), splat(0.0f), is_outside);
+    if (!any_lane(left != 0.0f)) {
+        march->are_there = false;
+        return;
+    }
+    // Of reciprocals all ends of pieces are looked at, too; the near one is the next one's far end.
+    const bool has_ends = volume->power > 0u && volume->slices == 0u;
+    for (uint channel = 0; channel < volume->channels; ++channel) {
+#ifdef CELLS_IN_IMAGES
+        const Cells cells = {volume, 0, (int)(channel * volume->layers)};
+#else
+        const Cells cells = {volume, march->values + (size_t)channel * volume->sheet * volume->layers, 0};
+#endif
+        floatv at = splat(0.0f), near = at, far = march->are_there ? march->fars[channel] : at;
+        const uint end = has_ends ? 3u : 2u;
+        for (uint place = has_ends && !march->are_there ? 0u : 1u; place < end; ++place) {
+            const floatv t = fma((1.0f - (float)place) * 0.5f, course->step, middle);
+            const floatv stored = stored_at(&cells, place_at(course, t) PASS_VALUES);
+            far = place == 0u ? stored : far;
+            at = place == 1u ? stored : at;
+            near = place == 2u ? stored : near;
+        }
+        march->fars[channel] = near;
+        add_light(march, channel, left * (has_ends ? mean_of_piece(volume, far, at, near) : emission_of(volume, at)));
+    }
+    march->are_there = has_ends;
+}
+
+INLINE floatv coarse_place(const floatv place, const uint count) {
+    return 0.5f * (clamp(place, splat(0.0f), splat((float)(count - 1u))) - 0.5f);
+}
+
+// Adds the light at a point of Gauss and Legendre, from the coarse grid.
+INLINE void add_coarse(March *const march, const floatv t, const floatv width) {
+    const TextureVolume *const volume = march->volume;
+    const float3v place = place_at(&march->course, t);
+    const uint3 count = ((uint3)(volume->columns, volume->rows, volume->layers) + 1u) / 2u;
+    const floatv x = coarse_place(place.x, volume->columns), y = coarse_place(place.y, volume->rows);
+    const floatv z = coarse_place(place.z, volume->layers);
+    const floatv cx = clamp(floor(x), splat(0.0f), splat((float)(count.x - 2u)));
+    const floatv cy = clamp(floor(y), splat(0.0f), splat((float)(count.y - 2u)));
+    const floatv cz = clamp(floor(z), splat(0.0f), splat((float)(count.z - 2u)));
+    const floatv fx = x - cx, fy = y - cy, fz = z - cz;
+    const intv first =
+        (to_intv_down(cz) * (int)volume->coarse_sheet) + to_intv_down(cy) * (int)volume->coarse_line + to_intv_down(cx);
+    const floatv left = width * left_after(march->view, t);
+    for (uint channel = 0; channel < volume->channels; ++channel) {
+        __global const float *const values = march->coarse + (size_t)channel * volume->coarse_sheet * count.z;
+        floatv sides[2];
+        for (uint side = 0; side < 2u; ++side) {
+            __global const float *const sheet = values + side * volume->coarse_sheet;
+            const floatv low = mix_pair(2u, sheet, first, fx);
+            sides[side] = fma(fy, mix_pair(2u, sheet + volume->coarse_line, first, fx) - low, low);
+        }
+        add_light(march, channel, left * max(fma(fz, sides[1] - sides[0], sides[0]), 0.0f));
+    }
+}
+
+// Returns how many points the pieces of a brick's length take, 0 where no ray meets light; BRICK: each piece is taken.
+INLINE uint points_of(const March *const march, const uint first) {
+    const TextureVolume *const volume = march->volume;
+    const Course *const course = &march->course;
+    const floatv begin = fma(splat((float)first), course->step, course->begin);
+    const floatv length = (float)BRICK * course->step;
+    const float3v place = place_at(course, fma(splat(0.5f), length, begin));
+    const uint3 count = ((uint3)(volume->columns, volume->rows, volume->layers) + (BRICK - 1u)) / BRICK;
+    const floatv x = clamp((place.x + 0.5f) * (1.0f / BRICK), splat(0.0f), splat((float)(count.x - 1u)));
+    const floatv y = clamp((place.y + 0.5f) * (1.0f / BRICK), splat(0.0f), splat((float)(count.y - 1u)));
+    const floatv z = clamp((place.z + 0.5f) * (1.0f / BRICK), splat(0.0f), splat((float)(count.z - 1u)));
+    const intv brick = ((to_intv_down(z) * (int)count.y + to_intv_down(y)) * (int)count.x + to_intv_down(x)) * 2;
+    const intv is_outside = (float)first >= march->count;
+    floatv bend, fourth;
+    gather_pairs(march->bricks, brick, &bend, &fourth);
+    bend = select(bend, splat(-1.0f), is_outside), fourth = select(fourth, splat(-1.0f), is_outside);
+    if (!any_lane(bend >= 0.0f))
+        return 0u;
+    // What fading changes over the length.
+    const TextureView *const view = march->view;
+    const floatv fades = length * (view->absorbed + (float)view->power * view->per_length /
+                                                        fma(begin, splat(view->per_length), splat(view->beta)));
+    if (!any_lane((max(bend + fourth, 0.0f) > volume->most_left) | (fades > MOST_FADING)))
+        return 2u;
+    const floatv halved = fma(0.7f, bend, (1.0f / 16.0f) * fourth);
+    return any_lane((halved > volume->most_left) | (fades > 2.0f * MOST_FADING)) ? BRICK : 4u;
+}
+
+INLINE void add_pieces(March *const march, const uint first, const uint count AND_VALUES) {
+    for (uint i = 0; i < count; ++i)
+        add_piece(march, first + count - 1u - i PASS_VALUES);
+}
+
+INLINE void add_points(March *const march, const uint first, const uint points) {
+    const Course *const course = &march->course;
+    const floatv width = (float)(BRICK / points) * course->step;
+    const intv is_outside = (float)first >= march->count;
+    for (uint i = 0; i < points; ++i) {
+        const float share = (float)(i / 2u * 2u) + (i % 2u > 0u ? 2.0f - FIRST_POINT : FIRST_POINT);
+        const floatv t = fma(splat(share), width, fma(splat((float)first), course->step, course->begin));
+        add_coarse(march, t, select(width, splat(0.0f), is_outside));
+    }
+}
+
+__kernel void draw_texture(const FilmPart part, const TextureView view, const TextureVolume volume, VALUES values,
+                           __global const float *const restrict coarse, __global const float *const restrict bricks,
+                           __global const float *const restrict depths, FILM_PARAMETER) {
     const uint begin = get_global_id(0) * LANES;
     if (begin >= part.count)
         return;
     float3v light = gathered_light(&part, begin, pixels);
-    floatv count;
-    const Course course = course_of(&view, &volume, part.first + begin + LANE_NUMBERS, depths, &count);
-    float3v sum = uniform3((float4)(0.0f));
-    const uint most = (uint)most_of(count);
-    // Of reciprocals all ends of pieces are looked at, too; the near one is the next one's far end.
-    const bool has_ends = volume.power > 0u && volume.slices == 0u;
-    floatv fars[3];
-    bool are_there = false;
-    for (uint i = 0; i < most; ++i) {
-        // From far to near, as slices are blended.
-        const floatv number = splat((float)(most - 1u - i));
-        const floatv middle = fma(number + MIDDLE, course.step, course.begin);
-        const intv is_outside = (number >= count) | (middle < course.low) | (middle > course.high);
-        const floatv left = select(course.step * left_after(&view, middle), splat(0.0f), is_outside);
-        if (!any_lane(left != 0.0f)) {
-            are_there = false;
-            continue;
+    March march = {.view = &view, .volume = &volume, .coarse = coarse, .bricks = bricks};
+#ifndef CELLS_IN_IMAGES
+    march.values = values;
+#endif
+    march.course = course_of(&view, &volume, part.first + begin + LANE_NUMBERS, depths, &march.count);
+    march.sum = uniform3((float4)(0.0f)), march.are_there = false;
+    const uint most = (uint)most_of(march.count);
+    // From far to near, as slices are blended; by bricks there are as many pieces as those have cells, or none.
+    for (uint end = most; end > 0u;) {
+        const uint first = volume.has_bricks ? end - BRICK : end - 1u;
+        const uint points = volume.has_bricks ? points_of(&march, first) : BRICK;
+        if (points == BRICK)
+            add_pieces(&march, first, end - first PASS_VALUES);
+        else {
+            march.are_there = false;
+            add_points(&march, first, points);
         }
-        for (uint channel = 0; channel < volume.channels; ++channel) {
-            const Cells cells = {&volume, values + (size_t)channel * volume.sheet * volume.layers};
-            floatv at = splat(0.0f), near = at, far = are_there ? fars[channel] : at;
-            const uint end = has_ends ? 3u : 2u;
-            for (uint place = has_ends && !are_there ? 0u : 1u; place < end; ++place) {
-                const floatv t = fma((1.0f - (float)place) * 0.5f, course.step, middle);
-                const floatv stored = stored_at(&cells, place_at(&course, t));
-                far = place == 0u ? stored : far;
-                at = place == 1u ? stored : at;
-                near = place == 2u ? stored : near;
-            }
-            fars[channel] = near;
-            const floatv it = left * (has_ends ? mean_of_piece(&volume, far, at, near) : emission_of(&volume, at));
-            sum.x += channel == 0u ? it : splat(0.0f);
-            sum.y += channel == 1u || volume.channels == 1u ? it : splat(0.0f);
-            sum.z += channel == 2u || volume.channels == 1u ? it : splat(0.0f);
-        }
-        are_there = has_ends;
+        end = first;
     }
-    light.x = fma(sum.x, splat(volume.red), light.x);
-    light.y = fma(sum.y, splat(volume.green), light.y);
-    light.z = fma(sum.z, splat(volume.blue), light.z);
+    light.x = fma(march.sum.x, splat(volume.red), light.x);
+    light.y = fma(march.sum.y, splat(volume.green), light.y);
+    light.z = fma(march.sum.z, splat(volume.blue), light.z);
     store_pixels(&part, begin, light, FILM_ARGUMENT);
 }

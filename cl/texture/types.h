@@ -26,5 +26,8 @@ typedef struct {
     float step;                        // cells
     float middle, radius;              // along the view, and of the ball around the box
     uint line;                         // what is between values of one row and the next
+    uint coarse_line, coarse_sheet;    // the same of the coarse grid
+    float most_left;                   // what long steps may leave, relative
+    uint has_bricks;
 } TextureVolume;
 CHECK_SIZE(TextureVolume, SIZEOF_TEXTUREVOLUME);

@@ -22,6 +22,7 @@ mod host_depth;
 mod host_image;
 mod host_lengths;
 mod image;
+mod image3d;
 mod kernel;
 #[cfg(feature = "kernel-cache")]
 mod key;
@@ -53,6 +54,7 @@ pub(crate) use host_depth::HeldDepths;
 pub use host_depth::HostDepthMemory;
 pub(crate) use host_lengths::{ClipValues, DepthValues, HostDepths};
 pub use host_lengths::{StoredDepths, definitions as host_depth_definitions};
+pub(crate) use image3d::{SharedImage, has_images};
 pub use kernel::{Argument, Kernel};
 pub(crate) use kernel::{RawMemory, by_value, halved, run_time, set_value};
 #[cfg(feature = "kernel-cache")]

@@ -24,6 +24,8 @@ pub struct RendererOptions {
     pub counts_samples: bool,
     /// Whether kernels may draw without having shown, at their first use on a device, that they compute correctly.
     pub skips_self_test: bool,
+    /// Whether the cells of volumes lie in 3D images where the device has such; `None`: on GPUs. Else in buffers.
+    pub volume_images: Option<bool>,
     /// Whether what was built is kept on disk for the next start.
     #[cfg(feature = "kernel-cache")]
     pub cache: KernelCache,

@@ -1,10 +1,12 @@
 //! The values of a scene in a shader's uniform block: a head that says how rays run, then the lights of every kind, and
 //! the series of local intensities, in rows of four float32.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
 use super::UniformField;
-use super::refuse::{no_form, refuse};
+use super::refuse::refuse;
 use crate::error::{Result, SceneError};
 #[cfg(feature = "shaders")]
 use crate::image::Exposure;
@@ -21,7 +23,7 @@ const MOST_BYTES: usize = 16384;
 
 /// A packed source that a shader may have.
 pub(super) trait Exported {
-    /// The text of its kind; empty where it has no form.
+    /// The text of its kind.
     const TEXT: &'static [&'static str];
 
     /// The same where a scene has light that changes along a core.
@@ -36,15 +38,18 @@ pub(super) trait Exported {
     /// How its field falls off.
     fn falloff(&self) -> Falloff;
 
-    /// Returns its struct in the block, but for its light; its series begins there in the block's.
-    fn rows(&self, series_begin: f32) -> Vec<Row>;
+    /// Returns its struct in the block, but for its light; where its series begins in the block's, and its rows.
+    fn rows(&self, series: [usize; 2]) -> Vec<Row>;
 
     /// Returns colour times coefficient times measure.
     fn emission(&self) -> Row;
 
-    /// Returns how its light changes along its core, of all packed rows.
-    fn series<'a>(&self, _: &'a [Row]) -> &'a [Row] {
-        &[]
+    /// Returns the rows of the series of one of a list, from all packed rows.
+    fn series(_: &[Self], _: usize, _: &[Row]) -> Vec<Row>
+    where
+        Self: Sized,
+    {
+        Vec::new()
     }
 }
 
@@ -201,9 +206,6 @@ impl Block {
         if list.is_empty() {
             return Ok(());
         }
-        if Device::TEXT.is_empty() {
-            return Err(no_form(format!("{name}[0]"), "this kind"));
-        }
         self.kinds.push(Kind {
             name,
             list_name,
@@ -214,9 +216,17 @@ impl Block {
             count: list.len(),
             first_byte: size_of::<Row>() * self.rows.len(),
         });
-        for source in list {
-            self.rows.extend(source.rows(self.series.len() as f32));
-            self.series.extend(source.series(packed));
+        // What is the same is there once.
+        let mut there: HashMap<Vec<[u32; 4]>, usize> = HashMap::new();
+        for (index, source) in list.iter().enumerate() {
+            let series = Device::series(list, index, packed);
+            let bits = series.iter().map(|row| row.map(f32::to_bits)).collect();
+            let begin = *there.entry(bits).or_insert_with(|| {
+                let begin = self.series.len();
+                self.series.extend_from_slice(&series);
+                begin
+            });
+            self.rows.extend(source.rows([begin, series.len()]));
             let falloff = source.falloff();
             if !Device::IS_MAPPED {
                 self.forms.add(falloff);

@@ -1,8 +1,8 @@
-//! Curves in a shader's block; a path of many pieces has no form there.
+//! Curves in a shader's block.
 
 use super::{Exported, Row};
+use crate::wave::pack::curve;
 use crate::wave::pack::layout::Falloff;
-use crate::wave::pack::{curve, path::LightPath};
 
 const CURVE: &str = include_str!("../../wgsl/curve.wgsl");
 
@@ -17,12 +17,11 @@ impl Exported for curve::Curve {
         self.falloff
     }
 
-    fn rows(&self, series_begin: f32) -> Vec<Row> {
+    fn rows(&self, [begin, count]: [usize; 2]) -> Vec<Row> {
         let with = |[x, y, z, _]: Row, last: f32| [x, y, z, last];
-        let count = self.spline_count as f32;
         vec![
-            with(self.middle, series_begin),
-            with(self.velocity, count),
+            with(self.middle, begin as f32),
+            with(self.velocity, count as f32),
             self.second,
         ]
     }
@@ -31,25 +30,8 @@ impl Exported for curve::Curve {
         self.emission
     }
 
-    fn series<'a>(&self, rows: &'a [Row]) -> &'a [Row] {
-        let begin = self.spline_begin as usize;
-        &rows[begin..begin + self.spline_count as usize]
-    }
-}
-
-impl Exported for LightPath {
-    const TEXT: &'static [&'static str] = &[];
-    const ROW_NAMES: &'static [&'static str] = &[];
-
-    fn falloff(&self) -> Falloff {
-        self.falloff
-    }
-
-    fn rows(&self, _: f32) -> Vec<Row> {
-        Vec::new()
-    }
-
-    fn emission(&self) -> Row {
-        self.emission
+    fn series(list: &[Self], index: usize, packed: &[Row]) -> Vec<Row> {
+        let begin = list[index].spline_begin as usize;
+        packed[begin..begin + list[index].spline_count as usize].to_vec()
     }
 }

@@ -15,7 +15,7 @@ macro_rules! exported {
                 self.falloff
             }
 
-            fn rows(&self, _: f32) -> Vec<Row> {
+            fn rows(&self, _: [usize; 2]) -> Vec<Row> {
                 let $source = self;
                 $rows
             }

@@ -11,6 +11,7 @@ mod constants;
 mod curves;
 mod irradiance;
 mod lines;
+mod paths;
 mod points;
 mod refuse;
 mod text;

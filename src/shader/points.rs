@@ -12,7 +12,7 @@ impl Exported for sphere::Sphere {
         self.falloff
     }
 
-    fn rows(&self, _: f32) -> Vec<Row> {
+    fn rows(&self, _: [usize; 2]) -> Vec<Row> {
         vec![self.center]
     }
 
@@ -30,7 +30,7 @@ impl Exported for torus::Torus {
         self.falloff
     }
 
-    fn rows(&self, _: f32) -> Vec<Row> {
+    fn rows(&self, _: [usize; 2]) -> Vec<Row> {
         let [x, y, z, _] = self.center;
         vec![[x, y, z, self.major_radius], self.axis]
     }

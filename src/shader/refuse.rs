@@ -57,20 +57,14 @@ fn refuse_source(source: &impl SourceKind, key: &str) -> Result<()> {
         };
         return Err(no_form(format!("{key}{layer}.profile"), name));
     }
-    match source.as_chains() {
-        None => Ok(()),
-        Some(_) => Err(no_form(
-            key,
-            "a core of many pieces (a polyline, a part of a ring, lightning, dashes)",
-        )),
-    }
+    Ok(())
 }
 
 /// Says that a key has no form.
 pub(super) fn no_form(key: impl Into<String>, what: &str) -> Error {
     let message = format!(
-        "{what} has no form in shaders, which have point, line, segment, beam, ring and curve with powers of 1/d or a \
-         Gaussian: export a scene without it, or give the engine a baked volume"
+        "{what} has no form in shaders, which have point, line, segment, beam, ring, curve and polyline with powers of \
+         1/d or a Gaussian: export a scene without it, or give the engine a baked volume"
     );
     SceneError::value(key, message).into()
 }

@@ -130,7 +130,7 @@ impl Block {
         if count > 0 {
             let byte = size_of::<Row>() * first;
             text += &format!(
-                "    /* {byte} */ series: array<vec4f, {count}>, // of local intensities\n"
+                "    /* {byte} */ series: array<vec4f, {count}>, // of local intensities, and corners of paths\n"
             );
         }
         let bytes = size_of::<Row>() * (first + count);

@@ -7,17 +7,26 @@ use crate::opencl::{
     Compute, DeviceStruct, FilmFormat, FilmPart, Kernel, Program, RendererOptions,
 };
 
+/// What a kernel is built for: the film, and whether cells are texels of images.
+pub(super) type Form = (FilmFormat, bool);
+
 /// Builds it.
 ///
 /// # Errors
 /// As [`Program::build`].
 pub(super) fn build(
     compute: &Compute,
-    format: FilmFormat,
+    (format, has_images): Form,
     options: &RendererOptions,
 ) -> Result<(Kernel, Program)> {
     let text = sources().resolve("texture/texture.cl");
-    let program = Program::build(compute, text, &definitions(format), options)?;
+    let images = if has_images {
+        " -D CELLS_IN_IMAGES"
+    } else {
+        ""
+    };
+    let definitions = definitions(format) + images;
+    let program = Program::build(compute, text, &definitions, options)?;
     Ok((program.kernel("draw_texture")?, program))
 }
 

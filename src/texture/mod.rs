@@ -3,6 +3,7 @@
 mod kernels;
 pub mod pack;
 mod self_test;
+mod smooth;
 mod sources;
 
 use std::collections::HashMap;
@@ -15,12 +16,15 @@ use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage};
 use crate::opencl::{
-    Argument, Compute, Film, FilmFormat, Handle, Kernel, RawMemory, RendererOptions,
-    UploadedShared, run_time,
+    Argument, Compute, DeviceType, Film, FilmFormat, Handle, Kernel, RawMemory, RendererOptions,
+    SharedImage, UploadedShared, has_images, run_time,
 };
-use crate::scene::Scene;
+use crate::scene::{Scene, Volume};
+use crate::volume::Texture;
+use kernels::Form;
 pub(crate) use kernels::build_text;
 use pack::{TextureView, TextureVolume};
+use smooth::Smooth;
 
 /// Work-items in a group, which share nothing.
 const GROUP: usize = 16;
@@ -32,12 +36,23 @@ const PIXELS: u32 = 1 << 17;
 #[derive(Debug)]
 pub(crate) struct Textures {
     options: RendererOptions,
-    kernels: HashMap<FilmFormat, Kernel>,
+    kernels: HashMap<Form, Kernel>,
     /// Of each volume.
     values: Vec<UploadedShared<f32>>,
+    images: Vec<SharedImage>,
+    /// Of each that is drawn by bricks.
+    smooth: Vec<SmoothOnDevice>,
     depths: UploadedShared<f32>,
     under_way: Vec<Handle<Event>>,
     cost: FrameCost,
+}
+
+/// What a volume is where it changes little.
+#[derive(Debug)]
+struct SmoothOnDevice {
+    host: Option<Smooth>,
+    cells: UploadedShared<f32>,
+    bricks: UploadedShared<f32>,
 }
 
 /// What is to be drawn.
@@ -45,7 +60,7 @@ pub(crate) struct Textures {
 pub(crate) struct TexturePlan {
     view: TextureView,
     volumes: Vec<TextureVolume>,
-    format: FilmFormat,
+    form: Form,
     /// Depths of others on the device; `None`: the scene's, if it has any.
     depths: Option<RawMemory>,
 }
@@ -64,6 +79,8 @@ impl Textures {
             options: options.clone(),
             kernels: HashMap::new(),
             values: Vec::new(),
+            images: Vec::new(),
+            smooth: Vec::new(),
             depths: UploadedShared::new("the depth image"),
             under_way: Vec::new(),
             cost: FrameCost::default(),
@@ -97,12 +114,21 @@ impl Textures {
         if scene.volumes.is_empty() {
             return Ok(None);
         }
-        if let Entry::Vacant(entry) = self.kernels.entry(format) {
-            let (kernel, program) = kernels::build(compute, format, &self.options)?;
+        let form = (format, self.has_images(compute, scene));
+        if let Entry::Vacant(entry) = self.kernels.entry(form) {
+            let (kernel, program) = kernels::build(compute, form, &self.options)?;
             let built = (kernel, &program);
-            entry.insert(self_test::self_test(compute, format, &self.options, built)?);
+            entry.insert(self_test::self_test(compute, form, &self.options, built)?);
         }
-        self.prepare(compute, scene, there, format).map(Some)
+        self.prepare(compute, scene, there, form).map(Some)
+    }
+
+    /// Returns whether the cells of all volumes go into images: GPUs have caches for those, CPUs draw four times as
+    /// fast from buffers.
+    fn has_images(&self, compute: &Compute, scene: &Scene) -> bool {
+        let is_gpu = compute.device().device_type == DeviceType::Gpu;
+        let fit = |volume: &Volume| has_images(compute, texels(&volume.texture));
+        self.options.volume_images.unwrap_or(is_gpu) && scene.volumes.iter().all(fit)
     }
 
     fn prepare(
@@ -110,28 +136,43 @@ impl Textures {
         compute: &Compute,
         scene: &Scene,
         there: Option<(RawMemory, DepthAlong)>,
-        format: FilmFormat,
+        form: Form,
     ) -> Result<TexturePlan> {
         let make = || UploadedShared::new("the cells of a volume");
         self.values.resize_with(scene.volumes.len(), make);
         let plane = scene.view_plane();
         let seen: Vec<_> = scene.volumes.iter().map(|it| it.as_seen(&plane)).collect();
-        for (values, volume) in self.values.iter_mut().zip(&seen) {
+        self.images
+            .resize_with(scene.volumes.len(), SharedImage::default);
+        for (index, volume) in seen.iter().enumerate() {
             let texture = &volume.texture;
-            values.upload_made(compute, texture.values(), || pack::strided(texture))?;
+            let values = texture.values();
+            match form.1 {
+                true => self.images[index].upload(compute, texels(texture), values)?,
+                false => {
+                    self.values[index].upload_made(compute, values, || pack::strided(texture))?
+                }
+            }
+        }
+        let method = scene.integration.volumes;
+        self.smooth
+            .resize_with(scene.volumes.len(), SmoothOnDevice::new);
+        for (smooth, volume) in self.smooth.iter_mut().zip(&seen) {
+            if pack::skips(volume, method) {
+                smooth.upload(compute, volume)?;
+            }
         }
         let depths = scene.depth.as_ref().map(DepthImage::shared_values);
         self.depths.upload(compute, depths)?;
         let own = scene.depth.as_ref().map(DepthImage::along);
         let along = there.map(|(_, along)| along).or(own);
-        let method = scene.integration.volumes;
         Ok(TexturePlan {
             view: TextureView::new(scene, &plane, along),
             volumes: seen
                 .iter()
                 .map(|volume| TextureVolume::new(volume, &plane, method))
                 .collect(),
-            format,
+            form,
             depths: there.map(|(memory, _)| memory),
         })
     }
@@ -148,7 +189,7 @@ impl Textures {
         film: &mut Film,
         turn: Turn,
     ) -> Result<()> {
-        let Some(kernel) = self.kernels.get(&plan.format) else {
+        let Some(kernel) = self.kernels.get(&plan.form) else {
             return Ok(());
         };
         let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
@@ -160,6 +201,11 @@ impl Textures {
         for (index, volume) in plan.volumes.iter().enumerate() {
             film.add_to_what_is_there(turn.adds || index > 0);
             film.leave_unfinished(turn.is_unfinished || index + 1 < plan.volumes.len());
+            let image = self.images[index].argument();
+            let values: &dyn Argument = match plan.form.1 {
+                true => &image,
+                false => self.values[index].argument(),
+            };
             let mut begin = pixels.start;
             while begin < pixels.end {
                 let part = begin..pixels.end.min(begin.saturating_add(PIXELS));
@@ -167,7 +213,9 @@ impl Textures {
                 let mut arguments: Vec<(&str, &dyn Argument)> = vec![
                     ("view", &plan.view),
                     ("volume", volume),
-                    ("values", self.values[index].argument()),
+                    ("values", values),
+                    ("coarse", self.smooth[index].cells.argument()),
+                    ("bricks", self.smooth[index].bricks.argument()),
                     ("depths", depths),
                 ];
                 arguments.extend(drawn.named());
@@ -198,6 +246,39 @@ impl Textures {
         for values in &mut self.values {
             values.settle(compute)?;
         }
+        for smooth in &mut self.smooth {
+            smooth.cells.settle(compute)?;
+            smooth.bricks.settle(compute)?;
+        }
         self.depths.settle(compute)
+    }
+}
+
+/// Returns the size of the image of a texture: channels stand behind each other.
+fn texels(texture: &Texture) -> [u32; 3] {
+    let [columns, rows, layers] = texture.cells();
+    [columns, rows, layers * texture.channels()]
+}
+
+impl SmoothOnDevice {
+    fn new() -> Self {
+        Self {
+            host: None,
+            cells: UploadedShared::new("the coarse cells of a volume"),
+            bricks: UploadedShared::new("the bricks of a volume"),
+        }
+    }
+
+    fn upload(&mut self, compute: &Compute, volume: &Volume) -> Result<()> {
+        let (texture, interpolation) = (&volume.texture, volume.interpolation);
+        let kept = self
+            .host
+            .take()
+            .filter(|it| it.is_of(texture, interpolation));
+        let host = self
+            .host
+            .insert(kept.unwrap_or_else(|| Smooth::new(texture, interpolation)));
+        self.cells.upload(compute, Some(&host.cells))?;
+        self.bricks.upload(compute, Some(&host.bricks))
     }
 }

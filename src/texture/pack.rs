@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::smooth::{coarse_strides, has_bricks};
 use crate::image::DepthAlong;
 use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
 use crate::scene::{Scene, ViewPlane, Volume, VolumeInterpolation, VolumeMethod};
@@ -34,7 +35,7 @@ device_struct! {
 
 device_struct! {
     /// A volume.
-    TextureVolume [112] {
+    TextureVolume [128] {
         to_x: [f32; 4] = 0,
         to_y: [f32; 4] = 16,
         to_z: [f32; 4] = 32,
@@ -54,6 +55,10 @@ device_struct! {
         middle: f32 = 100,
         radius: f32 = 104,
         line: u32 = 108,
+        coarse_line: u32 = 112,
+        coarse_sheet: u32 = 116,
+        most_left: f32 = 120,
+        has_bricks: u32 = 124,
     }
 }
 
@@ -105,6 +110,8 @@ impl TextureVolume {
         let from_eye = middle - to_cells * (volume.center - plane.eye);
         let row = |axis: usize| four(to_cells.row(axis), from_eye[axis]);
         let [red, green, blue] = volume.emission().as_vec3().to_array();
+        let has_bricks = skips(volume, method);
+        let [coarse_line, coarse_sheet] = coarse_strides(texture.cells());
         let (slices, step) = match method {
             VolumeMethod::Ray { step } => (0, step),
             VolumeMethod::Slices { .. } if volume.is_plate() => (0, 1.0),
@@ -130,8 +137,21 @@ impl TextureVolume {
             middle: (volume.center - plane.eye).dot(plane.forward) as f32,
             radius: volume.radius() as f32,
             line,
+            coarse_line,
+            coarse_sheet,
+            most_left: LEFT * (step * step) as f32,
+            has_bricks: u32::from(has_bricks),
         }
     }
+}
+
+/// What long steps may leave of the light of each, relative, where others are of a cell; much of that averages out.
+const LEFT: f32 = 1e-3;
+
+/// Returns whether rays go through a volume by bricks: pieces longer than a cell would go beyond what those say.
+pub(super) fn skips(volume: &Volume, method: VolumeMethod) -> bool {
+    let is_fine = matches!(method, VolumeMethod::Ray { step } if step <= 1.0);
+    is_fine && has_bricks(volume.texture.cells())
 }
 
 /// Values of a cache line.

@@ -1,8 +1,9 @@
-//! The first use of a freshly built kernel: two small volumes, stored and interpolated in either way, whose light the
-//! reference integrates. Some drivers miscompile kernels.
+//! The first use of a freshly built kernel: small volumes, stored and interpolated in either way, and one that is drawn
+//! by bricks, whose light the reference integrates. Some drivers miscompile kernels.
 
 use glam::DVec3;
 
+use super::kernels::Form;
 use super::{Textures, Turn};
 use crate::error::{Error, Result};
 use crate::image::ImageSize;
@@ -19,6 +20,9 @@ const SIZE: ImageSize = ImageSize {
 
 const CELLS: [u32; 3] = [5, 4, 6];
 
+/// Of a volume that is drawn by bricks.
+const SMOOTH_CELLS: [u32; 3] = [33, 26, 24];
+
 /// The error that light may have, of the brightest: what short pieces leave, and half floats.
 const LIMIT: f32 = 5e-4;
 const LIMIT_OF_HALVES: f32 = 2e-3;
@@ -29,7 +33,7 @@ const LIMIT_OF_HALVES: f32 = 2e-3;
 /// [`Error::SelfTest`] if it computes wrong.
 pub(super) fn self_test(
     compute: &Compute,
-    format: FilmFormat,
+    form: Form,
     options: &RendererOptions,
     (kernel, program): (Kernel, &Program),
 ) -> Result<Kernel> {
@@ -38,23 +42,23 @@ pub(super) fn self_test(
         return Ok(kernel);
     }
     let mut tester = Textures::new(options);
-    tester.kernels.insert(format, kernel);
+    tester.kernels.insert(form, kernel);
     let turn = Turn {
         adds: false,
         is_unfinished: false,
     };
-    for volume in volumes()? {
-        let scene = scene(volume);
-        let plan = tester.prepare(compute, &scene, None, format)?;
+    let small = volumes()?.map(|volume| scene(volume, 0.05));
+    for scene in small.into_iter().chain([scene(smooth()?, 1.0)]) {
+        let plan = tester.prepare(compute, &scene, None, form)?;
         let pixels = SIZE.pixels();
-        let mut film = Film::in_format(compute, format, SIZE.width, SIZE.height)?;
+        let mut film = Film::in_format(compute, form.0, SIZE.width, SIZE.height)?;
         film.reserve_band(compute, pixels, 1)?;
         tester.draw(compute, &plan, 0..pixels as u32, &mut film, turn)?;
         let mut found = vec![[0.0; 4]; pixels];
         film.read(compute, &mut found)?;
         tester.settle(compute)?;
         let expected = reference::render(&scene)?;
-        if let Some(reason) = difference(&found, expected.as_slice(), format) {
+        if let Some(reason) = difference(&found, expected.as_slice(), form.0) {
             let device = compute.device();
             return Err(Error::SelfTest {
                 device: device.name.clone(),
@@ -65,7 +69,7 @@ pub(super) fn self_test(
     }
     program.mark_tested();
     let lost = || Error::Unsupported("the kernel of volumes was lost in its test".to_owned());
-    tester.kernels.remove(&format).ok_or_else(lost)
+    tester.kernels.remove(&form).ok_or_else(lost)
 }
 
 /// Makes one of emission, RGB and linear, and one of reciprocals, cubic.
@@ -97,12 +101,32 @@ fn volumes() -> Result<[Volume; 2]> {
     }))
 }
 
-fn scene(volume: Volume) -> Scene {
+/// Makes one that changes so little that steps are long, but for a lobe in a corner.
+fn smooth() -> Result<Volume> {
+    let [columns, rows, layers] = SMOOTH_CELLS;
+    let light = |index: u32| {
+        let cell = [
+            index % columns,
+            index / columns % rows,
+            index / columns / rows,
+        ];
+        let [x, y, z] = cell.map(f64::from);
+        let lobe = (-0.3 * DVec3::new(x - 30.0, y - 3.0, z - 3.0).length_squared()).exp();
+        ((0.05 * x).sin() + 0.02 * y + (0.04 * z).cos() + lobe) as f32
+    };
+    let light = (0..columns * rows * layers).map(light).collect();
+    let mut volume = Volume::new(Texture::new(SMOOTH_CELLS, light, Storage::Emission)?);
+    volume.size = DVec3::new(1.9, 1.5, 1.4);
+    volume.rotation = DVec3::new(10.0, -25.0, 40.0);
+    Ok(volume)
+}
+
+fn scene(volume: Volume, step: f64) -> Scene {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.5, -4.0, 1.0), DVec3::ZERO));
     scene.image = SIZE;
     scene.camera.fov_y = 30.0;
     scene.integration.measure = Measure::Length;
-    scene.integration.volumes = VolumeMethod::Ray { step: 0.05 };
+    scene.integration.volumes = VolumeMethod::Ray { step };
     scene.decay = Some(Decay::new(0.5, 0.2));
     scene.volumes.push(volume);
     scene

@@ -2,7 +2,8 @@
 
 use crate::opencl::{SHARED, SourceFile, Sources, embed};
 
-const FILES: &[SourceFile<'static>] = embed!("texture/texture.cl", "texture/types.h");
+const FILES: &[SourceFile<'static>] =
+    embed!("texture/texture.cl", "texture/cells.h", "texture/types.h");
 
 /// Returns them, and what all engines share.
 pub(super) fn sources() -> Sources<'static> {

@@ -1,6 +1,6 @@
-"""Draws an exported GLSL shader by OpenGL (Mesa's llvmpipe) into a file of float32 RGB, rows from the top.
+"""Draws exported GLSL shaders by OpenGL (Mesa's llvmpipe) into files of float32 RGB, rows from the top.
 
-Arguments: the text, the bytes of its block, the output, width, height.
+Arguments, for each of them: the text, the bytes of its block, the output, width, which is the height.
 """
 
 import sys
@@ -14,8 +14,6 @@ except Exception as fault:
     print(f"skipped: {fault}")
     sys.exit()
 
-text, block, output = map(Path, sys.argv[1:4])
-size = tuple(map(int, sys.argv[4:6]))
 vertex = """#version 330 core
 smooth out vec2 _vs2fs_location0;
 void main() {
@@ -24,12 +22,19 @@ void main() {
     gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); // row 0 of what is read is the bottom, here the top
 }
 """
-program = context.program(vertex_shader=vertex, fragment_shader=text.read_text())
-if "WaveBlock" in program:
-    program["WaveBlock"].binding = 0
-    context.buffer(block.read_bytes()).bind_to_uniform_block(0)
-target = context.simple_framebuffer(size, components=4, dtype="f4")
-target.use()
-context.vertex_array(program, []).render(moderngl.TRIANGLES, vertices=3)
-output.write_bytes(target.read(components=3, dtype="f4"))
+
+
+def draw(text, block, output, side):
+    program = context.program(vertex_shader=vertex, fragment_shader=text.read_text())
+    if "WaveBlock" in program:
+        program["WaveBlock"].binding = 0
+        context.buffer(block.read_bytes()).bind_to_uniform_block(0)
+    target = context.simple_framebuffer((side, side), components=4, dtype="f4")
+    target.use()
+    context.vertex_array(program, []).render(moderngl.TRIANGLES, vertices=3)
+    output.write_bytes(target.read(components=3, dtype="f4"))
+
+
+for first in range(1, len(sys.argv), 4):
+    draw(*map(Path, sys.argv[first : first + 3]), int(sys.argv[first + 3]))
 print(f"drawn: {context.info['GL_RENDERER']}")

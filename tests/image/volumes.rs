@@ -45,7 +45,7 @@ fn texture(storage: Storage) -> Texture {
     Texture::new(CELLS, (0..3 * plane).map(value).collect(), storage).unwrap()
 }
 
-fn scene(storage: Storage) -> Scene {
+pub fn scene(storage: Storage) -> Scene {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.4, -4.0, 1.2), DVec3::ZERO));
     scene.image = ImageSize {
         width: 45,
@@ -60,7 +60,7 @@ fn scene(storage: Storage) -> Scene {
     scene
 }
 
-fn reference(scene: &Scene) -> RadianceImage {
+pub fn reference(scene: &Scene) -> RadianceImage {
     Renderer::new(&Device::reference())
         .unwrap()
         .render(scene)
@@ -68,7 +68,7 @@ fn reference(scene: &Scene) -> RadianceImage {
 }
 
 /// Returns the greatest difference of any pixel, and the greatest light.
-fn difference(one: &RadianceImage, other: &RadianceImage) -> f32 {
+pub fn difference(one: &RadianceImage, other: &RadianceImage) -> f32 {
     let pairs = one.as_slice().iter().zip(other.as_slice());
     let worst = pairs
         .map(|(one, other)| (one - other).abs())
@@ -112,6 +112,48 @@ fn rays_get_the_integral_of_what_is_interpolated() {
 }
 
 #[test]
+fn texels_of_images_give_what_cells_in_buffers_do() {
+    let with = |options: RendererOptions| {
+        let mut options = options;
+        options.volume_images = Some(true);
+        Renderer::with_options(&common::device(), &options).unwrap()
+    };
+    let mut buffers = Renderer::new(&common::device()).unwrap();
+    // These show that they are right before they draw; those that read the next cell show that they are not.
+    let mut images = [
+        with(RendererOptions::default()),
+        with(common::options(1, "")),
+    ];
+    let spoiled = common::compiled_with(&RendererOptions::default(), "-D NEXT_TEXEL=1");
+    let error = with(spoiled).render(&scene(Storage::Emission)).map(drop);
+    assert_eq!(error.unwrap_err().kind(), ErrorKind::SelfTest);
+    for (cells, storage) in [
+        (CELLS, Storage::Emission),
+        (CELLS, Storage::Reciprocal { power: 2 }),
+        ([5, 1, 3], Storage::Emission),
+    ] {
+        for interpolation in [VolumeInterpolation::Linear, VolumeInterpolation::Cubic] {
+            let mut scene = scene(storage);
+            if cells != CELLS {
+                let values = (0..45).map(|it| (it * 7 % 11 + 1) as f32).collect();
+                scene.volumes[0].texture = Texture::new(cells, values, storage).unwrap();
+            }
+            scene.volumes[0].interpolation = interpolation;
+            let expected = [buffers.render(&scene).unwrap(), reference(&scene)];
+            for renderer in &mut images {
+                let found = renderer.render(&scene).unwrap();
+                let off = [0, 1].map(|it| difference(&found, &expected[it]));
+                println!("{cells:?}, {storage:?}, {interpolation:?}: {off:?}");
+                assert!(
+                    off[0] < 1e-5 && off[1] < 5.0 * ERROR,
+                    "{storage:?}, {interpolation:?}: {off:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn slices_approach_the_integral_as_they_grow_more() {
     let mut renderer = Renderer::new(&common::device()).unwrap();
     let mut scene = scene(Storage::Emission);
@@ -133,7 +175,10 @@ fn slices_approach_the_integral_as_they_grow_more() {
 fn a_kernel_that_sums_beside_the_middles_is_found_out() {
     let spoiled = common::compiled_with(&RendererOptions::default(), "-D MIDDLE=0.9f");
     let mut renderer = Renderer::with_options(&common::device(), &spoiled).unwrap();
-    let error = renderer.render(&scene(Storage::Emission)).unwrap_err();
+    let error = renderer
+        .render(&scene(Storage::Emission))
+        .map(drop)
+        .unwrap_err();
     assert_eq!(error.kind(), ErrorKind::SelfTest, "{error}");
     assert!(
         error.to_string().contains("the light of a volume"),

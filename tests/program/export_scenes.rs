@@ -163,27 +163,43 @@ fn faded(power: u32, kappa: f64) -> Scene {
     scene
 }
 
-/// Those of the presets that a shader may have.
-const PRESETS: [&str; 8] = [
-    "charge",
-    "impact",
-    "kamehameha",
-    "laser",
-    "laser-corridor",
-    "meteor",
-    "nova",
-    "slash",
-];
+/// Cores of many pieces: smooth, with corners, parts of rings; with light and thickness that change along them.
+fn chains() -> Vec<(String, Scene)> {
+    let head = "[camera]\neye = [0.3, -3.5, 2]\ntarget = [0, 0, 0]\n";
+    let smooth = "points = [[-1, 0, 0.2], [-0.4, 0.6, -0.3], [0.2, -0.3, 0.4], [1, 0.2, 0]]\n";
+    [
+        ("smooth", format!("[[path]]\n{smooth}radius = 0.03\n")),
+        ("without end", format!("[[path]]\n{smooth}radius = 0.05\nprofile = \"inverse\"\n")),
+        (
+            "along",
+            format!("[[path]]\n{smooth}radii = [0.02, 0.08, 0.04]\nintensity = [0.2, 1.5, 0.7]\nreach = 0.5\n"),
+        ),
+        ("part of a ring", "[[torus]]\nmajor_radius = 0.8\nsweep = [20, 210]\nradius = 0.05\n".to_owned()),
+        (
+            "dashes",
+            "[[segment]]\nfrom = [-1, 0.2, 0.1]\nto = [1, -0.3, 0.4]\nradius = 0.06\ndashes = { count = 5 }\n"
+                .to_owned(),
+        ),
+    ]
+    .map(|(name, text)| {
+        let mut scene = Scene::from_toml(&format!("{head}{text}")).unwrap();
+        (scene.image.width, scene.image.height) = (SIDE_OF_NODES, SIDE_OF_NODES);
+        scene.integration.antialias = Antialias::None;
+        (name.to_owned(), scene)
+    })
+    .into()
+}
 
 /// Rings and curves from all sides, and presets.
 pub fn mapped_scenes() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
-    for name in PRESETS {
-        let mut scene = Scene::from_toml(Preset::named(name).unwrap().text).unwrap();
+    for preset in Preset::ALL {
+        let mut scene = Scene::from_toml(preset.text).unwrap();
         (scene.image.width, scene.image.height) = (SIDE_OF_NODES, SIDE_OF_NODES);
         scene.integration.antialias = Antialias::None;
-        scenes.push((name.to_owned(), scene));
+        scenes.push((preset.name.to_owned(), scene));
     }
+    scenes.extend(chains());
     let curves = [
         [
             DVec3::new(-1.0, -0.5, -0.5),

@@ -98,14 +98,6 @@ fn what_has_no_form_is_refused_by_its_place_and_nothing_is_written() {
     let cases = [
         ("", "scene.toml:1:1: the scene has no source that glows"),
         (
-            "[[torus]]\nmajor_radius = 1\nsweep = [0, 90]\n",
-            "scene.toml:4:1: torus[0]: a core of many pieces",
-        ),
-        (
-            "[[sphere]]\n[[path]]\npoints = [[0, 0, 0], [1, 0, 0]]\n",
-            "scene.toml:5:1: path[0]: a core of many pieces",
-        ),
-        (
             "[[sphere]]\nprofile = \"smeared\"\nradius = 1\n",
             "scene.toml:5:11: sphere[0].profile",
         ),
@@ -162,7 +154,7 @@ fn compiles(folder: &Path, name: &str, text: &str, options: &[&str]) -> Option<b
 #[test]
 fn a_compiler_takes_the_texts_for_direct3d_and_webgl() {
     let folder = Folder::new();
-    for name in ["charge", "laser-corridor", "slash"] {
+    for name in ["charge", "laser-corridor", "slash", "aura"] {
         let scene = Scene::from_toml(Preset::named(name).unwrap().text).unwrap();
         let hlsl = export(&scene, Language::Hlsl, Entry::Image).unwrap().text;
         for (stage, entry) in [("frag", "image"), ("vert", "screen")] {
