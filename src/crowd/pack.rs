@@ -1,13 +1,13 @@
 //! The structs of `cl/crowd/types.h`, in the same order, and what they say of a scene and its grid.
 
 use crate::error::Result;
-use crate::image::ImageSize;
+use crate::image::{DepthAlong, ImageSize};
 use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
 use crate::scene::{CORE_FLOOR, CrowdSight, Profile, Scene};
 
 device_struct! {
     /// The grid, what light becomes along its rays, and what is allowed.
-    CrowdView [128] {
+    CrowdView [144] {
         first_u: f32 = 0,
         first_v: f32 = 4,
         step_u: f32 = 8,
@@ -39,7 +39,11 @@ device_struct! {
         thickness: f32 = 112,
         across: u32 = 116,
         block: u32 = 120,
-        padding: u32 = 124,
+        shallow: u32 = 124,
+        wide_tiles: u32 = 128,
+        is_along_axis: u32 = 132,
+        slab_begin: f32 = 136,
+        per_slab: f32 = 140,
     }
 }
 
@@ -108,11 +112,29 @@ pub(super) struct Sorted {
     pub t: [f64; 2],
 }
 
-/// Packs what a scene says of its light, and of the grid.
+/// Of a tile: ends of rays at most, and of the two lowest levels; numbers in a row of the table of ends.
+pub(super) const MOST_ENDS: usize = 19;
+pub(super) const FEW_ENDS: usize = 7;
+pub(super) const ROW_OF_ENDS: usize = 20;
+
+/// Slabs of depth in a crowd, between the one before it and the one behind.
+const SLABS_INSIDE: f64 = 4.0;
+
+/// Where rays end, light changes as fast with a source's depth as with the end: so many more depths, and cells with
+/// depths so far down that a level has no more than these in a row.
+const MORE_DEPTHS: u32 = 4;
+const MOST_CELLS_ACROSS: u32 = 256;
+
+/// Packs what a scene says of its light, and of the grid; `along` is what depths are measured along that end rays.
 ///
 /// # Errors
 /// As [`CrowdSight::new`].
-pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<CrowdView> {
+pub(super) fn view(
+    scene: &Scene,
+    profile: Profile,
+    sorted: &Sorted,
+    along: Option<DepthAlong>,
+) -> Result<CrowdView> {
     let sight = CrowdSight::new(scene)?;
     let ImageSize { width, height } = scene.image;
     let length = sight.ray_length;
@@ -147,12 +169,23 @@ pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<C
     let is_dense =
         sorted.sources >= MANY && 8.0 * pixel * f64::from(2 * block + 1) < WIDEST_OF_MANY;
     let depths = (2.5 + 2.0 * (high - low)).ceil() as u32 + more + u32::from(is_square);
+    let shallow = sight.base(block);
+    let (base, depths) = match along {
+        None => (shallow, depths),
+        Some(_) => {
+            let is_coarse = |level: &u32| sight.across << (sight.top - level) <= MOST_CELLS_ACROSS;
+            let least = (0..sight.top).find(is_coarse).unwrap_or(sight.top);
+            (shallow.min(least), depths.max(4) + MORE_DEPTHS)
+        }
+    };
+    // Where rays pass the first and the last sources.
+    let [begin, end] = [low, high].map(|t| (t.exp() - sight.near) / length);
     let tiles = |level: u32, offset: u32, size: u32| {
         let side = 8 << level;
         (offset + size).div_ceil(side) - offset / side
     };
     let roots = tiles(sight.top, sight.left, width) * tiles(sight.top, sight.above, height);
-    Ok(CrowdView {
+    let mut view = CrowdView {
         first_u: sight.first[0] as f32,
         first_v: sight.first[1] as f32,
         step_u: sight.step[0] as f32,
@@ -171,7 +204,7 @@ pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<C
         nodes: nodes.min(MOST_NODES as u32),
         depths: depths.clamp(4, MOST_DEPTHS as u32),
         top: sight.top,
-        base: sight.base(block),
+        base,
         width,
         height,
         left: sight.left,
@@ -180,12 +213,19 @@ pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<C
         rest: sorted.rest,
         roots,
         tile_columns: width.div_ceil(8),
-        has_near_form: u32::from(sight.base(block) > 0 || is_dense),
+        has_near_form: u32::from(shallow > 0 || is_dense),
         thickness: thickness as f32,
         across: sight.across,
         block,
-        padding: 0,
-    })
+        shallow,
+        wide_tiles: 0,
+        is_along_axis: u32::from(!matches!(along, None | Some(DepthAlong::Ray))),
+        slab_begin: begin as f32,
+        per_slab: (SLABS_INSIDE / (end - begin).max(1e-3)) as f32,
+    };
+    let wide: usize = (2..=view.top).map(|level| view.tile_count(level)).sum();
+    view.wide_tiles = wide as u32;
+    Ok(view)
 }
 
 impl CrowdView {
