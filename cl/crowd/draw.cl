@@ -224,7 +224,7 @@ __kernel void draw_crowd(const FilmPart part, const CrowdView view, __global con
     const float per_half_side = 1.0f / (float)(4u << level);
     const float from_x = (float)(left + view.left) - (float)(every_other(code) << (3u + level));
     const float from_y = (float)(top + view.above) - (float)(every_other(code >> 1) << (3u + level));
-    __global const float *const value = values + place_of_values(&view, slot);
+    __global const float *const value = values + VALUES * slot;
     float3v light[VECTORS];
     End ends[END_VECTORS];
 #ifdef WITH_ENDS

@@ -6,11 +6,10 @@
 #include "point.h"
 
 #ifdef WITH_ENDS
-// Ends in a tile, at most, and of the two lowest levels; a row of the table of ends, whose last number counts nodes.
+// Ends in a tile, at most; a row of the table of ends, whose last number counts nodes.
 #define SLABS 6u
 #define MOST_IN_SLAB 3u
 #define MOST_ENDS 19u
-#define FEW_ENDS 7u
 #define ROW_OF_ENDS 20u
 #define WHOLE_BIT (1u << 12)
 
@@ -55,24 +54,19 @@ uint ends_of_tile(const CrowdView *const view, __global const float *const range
             }
             has_whole |= range[2u * SLABS] > 0.0f;
         }
-    uint counts = 0u, all = 0u, most = MOST_IN_SLAB;
-    const uint room = level > 1u ? MOST_ENDS : FEW_ENDS;
-    do {
-        counts = has_whole ? WHOLE_BIT : 0u, all = has_whole ? 1u : 0u;
-        for (uint slab = 0u; slab < SLABS; ++slab) {
-            if (low[slab] > high[slab])
-                continue;
-            // How far apart the ends are, in sides of the tile.
-            const float side = angle * fma(view->ray_length, max(low[slab], 0.0f), view->near_plane);
-            const float span = view->ray_length * (high[slab] - low[slab]) / side;
-            const uint wanted = min(span < 0.02f ? 1u : span < 0.3f ? 2u : 3u, most);
+    uint counts = has_whole ? WHOLE_BIT : 0u;
+    for (uint slab = 0u; slab < SLABS; ++slab) {
+        if (low[slab] > high[slab])
+            continue;
+        // How far apart the ends are, in sides of the tile.
+        const float side = angle * fma(view->ray_length, max(low[slab], 0.0f), view->near_plane);
+        const float span = view->ray_length * (high[slab] - low[slab]) / side;
 #ifdef ONE_END
-            counts |= 1u << (2u * slab), all += 1u; // spoiled
+        counts |= 1u << (2u * slab); // spoiled
 #else
-            counts |= wanted << (2u * slab), all += wanted;
+        counts |= (span < 0.02f ? 1u : span < 0.3f ? 2u : 3u) << (2u * slab);
 #endif
-        }
-    } while (all > room && --most > 0u);
+    }
     uint at = 0u;
     for (uint slab = 0u; slab < SLABS; ++slab) {
         const uint n = nodes_in(counts, slab);

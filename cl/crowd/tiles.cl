@@ -40,15 +40,8 @@ void inherit(__global const float *const numbers, const float *const parent, con
     }
 }
 
-// Returns where the values of a tile begin.
-uint place_of_values(const CrowdView *const view, const uint slot) {
-#ifdef WITH_ENDS
-    const uint wide = min(slot, view->wide_tiles);
-    return 3u * NODES * (MOST_ENDS * wide + FEW_ENDS * (slot - wide));
-#else
-    return 3u * NODES * slot;
-#endif
-}
+// Numbers of the light of a tile.
+#define VALUES (3u * NODES * MOST_ENDS)
 
 #ifdef WITH_ENDS
 // Writes the light of a parent up to a share of its rays.
@@ -179,7 +172,7 @@ __kernel void light_tiles(const CrowdView view, const uint level, const uint fir
                 inherited[k] = 0.0f;
             if (level < view.top) {
                 const uint above = tiles[slot].parent;
-                __global const float *const theirs = values + place_of_values(&view, above);
+                __global const float *const theirs = values + VALUES * above;
 #ifdef WITH_ENDS
                 parent_up_to(&view, ends_of_tiles + ROW_OF_ENDS * above, theirs, ends[end], parent);
 #else
@@ -231,7 +224,7 @@ __kernel void light_tiles(const CrowdView view, const uint level, const uint fir
         }
         atomic_add(counts + (level >= view.shallow ? COUNTED_CELLS : COUNTED_LIMITS), looked_at);
         for (uint end = 0u; end < ENDS_OF(&tile); ++end) {
-            __global float *const value = values + place_of_values(&view, slot) + 3u * NODES * end;
+            __global float *const value = values + VALUES * slot + 3u * NODES * end;
             for (uint batch = 0u; batch < BATCHES; ++batch) {
                 const float3v *const light = &tile.light[end * BATCHES + batch];
                 STORE_LANES(light->x, value + batch * LANES);

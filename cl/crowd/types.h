@@ -37,10 +37,10 @@ typedef struct {
     uint across;        // cells of the highest level in a row, a power of 2
     uint block;         // cells on each side of a tile that belong to what lies around it
     uint shallow;       // levels below it have limits
-    uint wide_tiles;    // tiles of all levels that may have many ends
     uint is_along_axis; // depths are lengths along the axis of view
     float slab_begin;   // the share of rays at which the crowd begins
     float per_slab;     // slabs in the crowd, by the share
+    uint padding;
 } CrowdView;
 CHECK_SIZE(CrowdView, SIZEOF_CROWDVIEW);
 

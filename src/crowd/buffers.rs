@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 
 use super::COUNTS;
-use super::pack::{CrowdSource, CrowdTile, CrowdView, FEW_ENDS, MOST_ENDS, ROW_OF_ENDS};
+use super::pack::{CrowdSource, CrowdTile, CrowdView, MOST_ENDS, ROW_OF_ENDS};
 use crate::error::Result;
 use crate::opencl::{Argument, Compute, DeviceBuffer};
 
@@ -107,8 +107,7 @@ impl Buffers {
         let smallest = (view.tile_columns * view.height.div_ceil(8)) as usize;
         let mut values = tiles;
         if has_ends {
-            let wide = view.wide_tiles as usize;
-            values = MOST_ENDS * wide + FEW_ENDS * (tiles - wide);
+            values = MOST_ENDS * tiles;
             let pixels = view.width as usize * view.height as usize;
             self.shares.reserve(compute, pixels)?;
             self.ranges.reserve(compute, ROW_OF_RANGES * smallest)?;

@@ -40,10 +40,10 @@ device_struct! {
         across: u32 = 116,
         block: u32 = 120,
         shallow: u32 = 124,
-        wide_tiles: u32 = 128,
-        is_along_axis: u32 = 132,
-        slab_begin: f32 = 136,
-        per_slab: f32 = 140,
+        is_along_axis: u32 = 128,
+        slab_begin: f32 = 132,
+        per_slab: f32 = 136,
+        padding: u32 = 140,
     }
 }
 
@@ -112,9 +112,8 @@ pub(super) struct Sorted {
     pub t: [f64; 2],
 }
 
-/// Of a tile: ends of rays at most, and of the two lowest levels; numbers in a row of the table of ends.
+/// Of a tile: ends of rays at most, and numbers in a row of the table of ends.
 pub(super) const MOST_ENDS: usize = 19;
-pub(super) const FEW_ENDS: usize = 7;
 pub(super) const ROW_OF_ENDS: usize = 20;
 
 /// Slabs of depth in a crowd, between the one before it and the one behind.
@@ -185,7 +184,7 @@ pub(super) fn view(
         (offset + size).div_ceil(side) - offset / side
     };
     let roots = tiles(sight.top, sight.left, width) * tiles(sight.top, sight.above, height);
-    let mut view = CrowdView {
+    Ok(CrowdView {
         first_u: sight.first[0] as f32,
         first_v: sight.first[1] as f32,
         step_u: sight.step[0] as f32,
@@ -218,14 +217,11 @@ pub(super) fn view(
         across: sight.across,
         block,
         shallow,
-        wide_tiles: 0,
         is_along_axis: u32::from(!matches!(along, None | Some(DepthAlong::Ray))),
         slab_begin: begin as f32,
         per_slab: (SLABS_INSIDE / (end - begin).max(1e-3)) as f32,
-    };
-    let wide: usize = (2..=view.top).map(|level| view.tile_count(level)).sum();
-    view.wide_tiles = wide as u32;
-    Ok(view)
+        padding: 0,
+    })
 }
 
 impl CrowdView {
