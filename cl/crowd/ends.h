@@ -1,5 +1,5 @@
-// Where the rays of a tile end. Shares of their length fall into slabs of depth, the same for all tiles: one before the
-// crowd, one behind it, and between them some in it; a tile has Chebyshev nodes in each slab in which rays of it end,
+// Where the rays of a tile end. Shares of their length fall into slabs of depth, the same for all tiles: some in and
+// around the crowd, one before them and one behind; a tile has Chebyshev nodes in each slab in which rays of it end,
 // over just the shares there, and one more for whole rays. Light is interpolated between the nodes of a slab only.
 #pragma once
 #include "nodes.h"
@@ -7,14 +7,14 @@
 
 #ifdef WITH_ENDS
 // Ends in a tile, at most; a row of the table of ends, whose last number counts nodes.
-#define SLABS 6u
+#define SLABS 8u
 #define MOST_IN_SLAB 3u
-#define MOST_ENDS 19u
-#define ROW_OF_ENDS 20u
-#define WHOLE_BIT (1u << 12)
+#define MOST_ENDS 25u
+#define ROW_OF_ENDS 26u
+#define WHOLE_BIT (1u << 16)
 
 // Of each tile of 8 pixels: the least and the greatest share in each slab, and whether there are whole rays.
-#define ROW_OF_RANGES 14u
+#define ROW_OF_RANGES 18u
 
 // Returns the slab of a share; SLABS for a whole ray.
 INLINE floatv slab_of(const CrowdView *const view, const floatv share) {

@@ -38,8 +38,8 @@ typedef struct {
     uint block;         // cells on each side of a tile that belong to what lies around it
     uint shallow;       // levels below it have limits
     uint is_along_axis; // depths are lengths along the axis of view
-    float slab_begin;   // the share of rays at which the crowd begins
-    float per_slab;     // slabs in the crowd, by the share
+    float slab_begin;   // the share of rays at which slabs begin
+    float per_slab;     // slabs by the share
     uint padding;
 } CrowdView;
 CHECK_SIZE(CrowdView, SIZEOF_CROWDVIEW);

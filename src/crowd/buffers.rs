@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::opencl::{Argument, Compute, DeviceBuffer};
 
 /// Numbers of the ranges of ends in a tile of 8 pixels.
-const ROW_OF_RANGES: usize = 14;
+const ROW_OF_RANGES: usize = 18;
 
 /// Rays of a tile.
 pub(super) const NODES_OF_TILE: usize = 16;

@@ -146,10 +146,14 @@ impl Crowd {
             Some((same, sorted)) if *same == known => *sorted,
             _ => {
                 self.known = None;
-                let sorted = self.sorter.sort(scene, &sight, self.profile);
+                let sorted = self.sorter.see(scene, &sight, self.profile);
                 let (sorter, buffers) = (&self.sorter, &mut self.buffers);
-                buffers.sources.write(compute, &sorter.sources)?;
-                buffers.cells.write(compute, &sorter.cells)?;
+                let count = sorted.sources as usize;
+                let cells = buffers.cells.reserve(compute, count)?;
+                let sources = buffers.sources.reserve(compute, count)?;
+                cells.fill(compute, count, |cells| {
+                    sources.fill(compute, count, |sources| sorter.sort(sources, cells))
+                })??;
                 buffers.starts.write(compute, &sorter.starts)?;
                 buffers.rest.write(compute, &sorter.rest)?;
                 self.known = Some((known, sorted));

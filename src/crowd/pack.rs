@@ -113,11 +113,13 @@ pub(super) struct Sorted {
 }
 
 /// Of a tile: ends of rays at most, and numbers in a row of the table of ends.
-pub(super) const MOST_ENDS: usize = 19;
-pub(super) const ROW_OF_ENDS: usize = 20;
+pub(super) const MOST_ENDS: usize = 25;
+pub(super) const ROW_OF_ENDS: usize = 26;
 
-/// Slabs of depth in a crowd, between the one before it and the one behind.
-const SLABS_INSIDE: f64 = 4.0;
+/// Slabs of depth in and around a crowd, between the one before them and the one behind; how far before it and behind
+/// it they go, in its own extents.
+const SLABS_INSIDE: f64 = 6.0;
+const AROUND: [f64; 2] = [0.5, 2.0];
 
 /// Where rays end, light changes as fast with a source's depth as with the end: so many more depths, and cells with
 /// depths so far down that a level has no more than these in a row.
@@ -177,8 +179,7 @@ pub(super) fn view(
             (shallow.min(least), depths.max(4) + MORE_DEPTHS)
         }
     };
-    // Where rays pass the first and the last sources.
-    let [begin, end] = [low, high].map(|t| (t.exp() - sight.near) / length);
+    let [begin, end] = slabs(scene, &sight, sorted.t);
     let tiles = |level: u32, offset: u32, size: u32| {
         let side = 8 << level;
         (offset + size).div_ceil(side) - offset / side
@@ -222,6 +223,27 @@ pub(super) fn view(
         per_slab: (SLABS_INSIDE / (end - begin).max(1e-3)) as f32,
         padding: 0,
     })
+}
+
+/// Returns the shares of rays between which there are slabs of depth: in and around the crowd, as far as rays end there.
+fn slabs(scene: &Scene, sight: &CrowdSight, t: [f64; 2]) -> [f64; 2] {
+    let share = |z: f64| (z - sight.near) / sight.ray_length;
+    let [low, high] = t.map(f64::exp);
+    let wide = high - low;
+    let crowd = [low - AROUND[0] * wide, high + AROUND[1] * wide].map(share);
+    let Some(depth) = &scene.depth else {
+        return crowd;
+    };
+    let (mut first, mut last) = (f32::INFINITY, 0.0_f32);
+    for length in depth.as_slice().iter().filter(|it| it.is_finite()) {
+        (first, last) = (first.min(*length), last.max(*length));
+    }
+    let ends = [first, last].map(|length| share(f64::from(length)).clamp(0.0, 1.0));
+    let both = [crowd[0].max(ends[0]), crowd[1].min(ends[1])];
+    match both[0] < both[1] {
+        true => both,
+        false => ends,
+    }
 }
 
 impl CrowdView {

@@ -20,10 +20,10 @@ const SIZE: ImageSize = ImageSize {
 };
 
 /// Every so many pixels are looked at.
-const EVERY: usize = 5;
+const EVERY: usize = 9;
 
-/// More than a crowd's limit for one of them; some tiles are open to the end and some are not.
-const COUNT: u32 = 700;
+/// So many that cells have more of them than nodes; some tiles are open to the end and some are not.
+const COUNT: u32 = 5000;
 
 /// The tolerance that is asked for; the error that a pixel may have, which is also for half floats.
 const TOLERANCE: f64 = 1e-4;
@@ -104,7 +104,7 @@ fn scene(profile: Profile, decay: Option<Decay>, has_ends: bool) -> Result<Scene
     let (places, lights) = ((0..COUNT).map(place), (0..COUNT).map(light));
     let list = PointList::with_lights(places.collect(), lights.collect())?;
     let mut points = Points::new(list);
-    (points.profile, points.coefficient) = (profile, 1e-3);
+    (points.profile, points.coefficient) = (profile, 1e-4);
     scene.points.push(points);
     if has_ends {
         // Steps of the width of a few pixels, within the crowd, before it, and nowhere.

@@ -37,6 +37,9 @@ pub const PIXELS: usize = 1500;
 /// Of larger crowds, fewer: truth is a sum over all points.
 pub const FEWER_PIXELS: usize = 500;
 
+/// Of a hundred thousand and more, so many that all their sums have this many terms.
+const FEWEST_TERMS: usize = 30_000_000;
+
 /// How points lie and shine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
@@ -239,7 +242,11 @@ fn faults(cases: &[(Shape, usize, f64)]) -> Vec<String> {
         for profile in PROFILES {
             let scene = scene(*shape, *count, profile, *tolerance);
             let image = renderer.render(&scene).unwrap();
-            let many = if *count > 3000 { FEWER_PIXELS } else { PIXELS };
+            let many = match count {
+                ..=3000 => PIXELS,
+                ..=60_000 => FEWER_PIXELS,
+                _ => FEWEST_TERMS / count,
+            };
             let name = format!("{shape:?} of {count}, {profile:?}, {tolerance:e}");
             faults.extend(fault(&scene, image.as_slice(), *tolerance, many, &name));
         }
@@ -278,6 +285,17 @@ fn crowds_of_one_of_two_and_of_many_are_within_a_thousandth() {
         (Shape::HeavyTails, 30_000, 1e-3),
         (Shape::Inside, 30_000, 1e-3),
         (Shape::AtPlane, 30_000, 1e-3),
+    ];
+    assert_eq!(faults(&cases), Vec::<String>::new());
+}
+
+#[test]
+fn a_hundred_thousand_and_a_million_points_are_within_a_thousandth() {
+    let cases = [
+        (Shape::Ball, 100_000, 1e-3),
+        (Shape::Clumps, 100_000, 1e-3),
+        (Shape::HeavyTails, 100_000, 1e-3),
+        (Shape::Ball, 1_000_000, 1e-3),
     ];
     assert_eq!(faults(&cases), Vec::<String>::new());
 }
