@@ -225,7 +225,8 @@ pub(super) fn view(
     })
 }
 
-/// Returns the shares of rays between which there are slabs of depth: in and around the crowd, as far as rays end there.
+/// Returns the shares of rays between which there are slabs of depth: in and around the crowd, as far as rays end
+/// there.
 fn slabs(scene: &Scene, sight: &CrowdSight, t: [f64; 2]) -> [f64; 2] {
     let share = |z: f64| (z - sight.near) / sight.ray_length;
     let [low, high] = t.map(f64::exp);

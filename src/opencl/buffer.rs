@@ -172,7 +172,7 @@ impl<T: Pod> DeviceBuffer<T> {
         // SAFETY: the range lies within the buffer; the pointer is used only until it is unmapped.
         unsafe {
             compute.queue.enqueue_map_buffer(
-                &mut self.buffer,
+                &self.buffer,
                 CL_TRUE,
                 CL_MAP_WRITE_INVALIDATE_REGION,
                 0,
