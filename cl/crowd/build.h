@@ -25,6 +25,7 @@ __kernel void find_peaks(const CrowdView view, __global const uint *const restri
     const floatv off2 = fma(own_u, own_u, fma(own_v, own_v, splat(1e-12f)));
     const floatv per_off = 0.5f * twice_inverse_sqrt_(off2);
     const floatv way_u = (own_v + 1e-6f) * per_off, way_v = (1e-6f - own_u) * per_off;
+    const End end = whole_ray(&view);
     floatv light[2], core[2];
     for (uint k = 0u; k < 2u; ++k) {
         const float away = k == 0u ? 3.0f / 48.0f : 1.0f;
@@ -34,7 +35,7 @@ __kernel void find_peaks(const CrowdView view, __global const uint *const restri
         const floatv c = fma(a, own_v, -b * own_u), beside2 = fma(a, a, fma(b, b, c * c));
         const floatv per2 = rays.per_stretch * rays.per_stretch;
         const floatv along = z * fma(rays.u, own_u, fma(rays.v, own_v, splat(1.0f))) * rays.per_stretch;
-        light[k] = light_beside(&view, rays.begin - along, z * z * beside2 * per2);
+        light[k] = light_beside(&view, &end, rays.begin - along, z * z * beside2 * per2);
         core[k] = core_of(&view, beside2 * per2 / (1.0f + off2));
     }
     const floatv found = (light[0] - light[1]) / (core[0] - core[1]);
@@ -45,21 +46,22 @@ __kernel void find_peaks(const CrowdView view, __global const uint *const restri
     }
 }
 
-// Sums the peaks of a cell's sources, and in .w has the greatest; and their levels, in the place of which each source
-// then has the least square of a sine that its core is seen under.
+// Sums the peaks of a cell's sources, and in .w has the greatest; and their levels, in .w the least ln z. In the place
+// of its level each source then has the least square of a sine that its core is seen under.
 __kernel void sum_cells(const CrowdView view, __global const uint *const restrict starts,
                         __global CrowdSource *const restrict sources, __global float4 *const restrict peaks,
                         __global float4 *const restrict levels) {
     const uint cell = get_global_id(0);
     if (cell >= cells_below(&view, 1u))
         return;
-    float4 peak = (float4)(0.0f), level = (float4)(0.0f);
+    float4 peak = (float4)(0.0f), level = (float4)(0.0f, 0.0f, 0.0f, INFINITY);
     for (uint index = starts[cell]; index < starts[cell + 1u]; ++index) {
         __global CrowdSource *const source = sources + index;
         const float4 light = (float4)(source->red, source->green, source->blue, 0.0f);
         peak.xyz += source->peak * light.xyz;
         peak.w = max(peak.w, source->peak * max(light.x, max(light.y, light.z)));
         level.xyz += source->level * light.xyz;
+        level.w = min(level.w, source->t);
         source->level = max(view.floor2 * exp(-2.0f * source->t), 1e-24f);
     }
     peaks[cell] = peak, levels[cell] = level;
@@ -72,11 +74,12 @@ __kernel void sum_quarters(const CrowdView view, const uint level, __global floa
     if (cell >= across * across)
         return;
     const uint from = cells_below(&view, level - 1u) + 4u * cell, to = cells_below(&view, level) + cell;
-    float4 peak = (float4)(0.0f), sum = (float4)(0.0f);
+    float4 peak = (float4)(0.0f), sum = (float4)(0.0f, 0.0f, 0.0f, INFINITY);
     for (uint quarter = from; quarter < from + 4u; ++quarter) {
         peak.xyz += peaks[quarter].xyz;
         peak.w = max(peak.w, peaks[quarter].w);
-        sum += levels[quarter];
+        sum.xyz += levels[quarter].xyz;
+        sum.w = min(sum.w, levels[quarter].w);
     }
     peaks[to] = peak, levels[to] = sum;
 }
@@ -146,17 +149,17 @@ INLINE void lay_deep(const CrowdView *const view, const Laying *const laying, co
     }
 }
 
-// Lays the light of a cell's sources on its nodes. At levels without depths it is their peaks, where `is_wanted` says
+// Lays the light of a cell's sources on its nodes. Without depths it is their peaks, where `is_wanted` says
 // that tiles look at the cell that it is a quarter of.
-__kernel void lay_sources(const CrowdView view, const uint level, __global const uint *const restrict starts,
-                          __global const uint *const restrict cells, __global const CrowdSource *const restrict sources,
+__kernel void lay_sources(const CrowdView view, const uint level, const uint has_depths,
+                          __global const uint *const restrict starts, __global const uint *const restrict cells,
+                          __global const CrowdSource *const restrict sources,
                           __global const float *const restrict numbers, __global const uint *const restrict is_wanted,
                           __global float4 *const restrict nodes) {
     const uint cell = get_global_id(0), across = cells_across(&view, level);
     if (cell >= across * across)
         return;
     const uint begin = starts[cell << (2u * level)], end = starts[(cell + 1u) << (2u * level)];
-    const bool has_depths = level >= view.base;
     if (begin == end || (!has_depths && is_wanted[cells_below(&view, level + 1u) + (cell >> 2)] == 0u))
         return;
     const uint n = view.nodes, depths = has_depths ? view.depths : 1u;

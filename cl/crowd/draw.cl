@@ -5,6 +5,13 @@
 #define PIXELS 64u
 #define VECTORS (PIXELS / LANES)
 
+// Rays of pixels end where each does, or all are whole.
+#ifdef WITH_ENDS
+#define END_VECTORS VECTORS
+#else
+#define END_VECTORS 1u
+#endif
+
 // Returns the integral of 1 / sqrt(x^2 + y^2 + t^2) over a rectangle from the origin.
 INLINE floatv square_from_origin(const floatv x, const floatv y, const float t) {
     const floatv x2 = fma(x, x, splat(t * t)), y2 = fma(y, y, splat(t * t));
@@ -81,7 +88,7 @@ INLINE void add_near(const CrowdView *const view, __global const CrowdSource *co
 // The same by the whole closed form, where pixels are so wide that a source's strength changes from one to the next. In
 // a pixel that is a mean, a core is rounded off in the closed form, and what is missing comes from the other.
 INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *const source, const float x,
-                      const float y, const float column, const float row, float3v *const light) {
+                      const float y, const float column, const float row, const End *const ends, float3v *const light) {
     const float u = slope_u(view, column + x), v = slope_v(view, row + y), z = exp(source->t);
     const float stretch2 = fma(u, u, fma(v, v, 1.0f)), per2 = 1.0f / stretch2;
     const float width = view->step_u * sqrt(fma(v, v, 1.0f) * per2),
@@ -94,9 +101,14 @@ INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *c
                                        fma(splat(view->step_v), down, splat(slope_v(view, row))));
         const floatv beside2 = cross2(view->step_u * (right - x), view->step_v * (down - y), u, v);
         const floatv q = beside2 * per2, rounded = max(q, round2);
-        add_light(&light[vector], light_of_place(view, &rays, u, v, z, rounded * stretch2, 0.0f), own);
-        const intv is_core = q < 9.0f * width * height;
+        const Passing it = passing(&rays, u, v, z, rounded * stretch2, 0.0f);
+        const End *const end = &ends[vector % END_VECTORS];
+        add_light(&light[vector], light_beside(view, end, rays.begin - it.along, it.least), own);
+        intv is_core = q < 9.0f * width * height;
         if (view->thickness > 0.0f && any_lane(is_core)) {
+#ifdef WITH_ENDS
+            is_core &= rays.begin + end->length > it.along;
+#endif
             const floatv mean = mean_core(view, right - x, down - y, width, height, q, source->level);
             const floatv more = (mean - core_of(view, rounded)) * (view->is_square ? rays.stretch : splat(1.0f));
             add_light(&light[vector], select(splat(0.0f), more, is_core), source->peak * own);
@@ -107,7 +119,8 @@ INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *c
 // Adds the sources around an open tile, in their order.
 INLINE void add_around(const CrowdView *const view, __global const uint *const starts,
                        __global const CrowdSource *const sources, __global const float4 *const levels, const uint code,
-                       float3v *const light, __global uint *const counts) {
+                       const bool has_near_form, const End *const ends, float3v *const light,
+                       __global uint *const counts) {
     const uint column = every_other(code), row = every_other(code >> 1), across = cells_across(view, 0u);
     const float middle_x = (float)(8u * column + 4u), middle_y = (float)(8u * row + 4u);
     float3v near[VECTORS], sum = uniform3((float4)(0.0f)), level = sum;
@@ -121,16 +134,16 @@ INLINE void add_around(const CrowdView *const view, __global const uint *const s
             const float from_x = 8.0f * ((float)x - (float)column), from_y = 8.0f * ((float)y - (float)row);
             for (uint index = starts[cell]; index < starts[cell + 1u]; ++index) {
                 __global const CrowdSource *const source = sources + index;
-                if (view->has_near_form)
+                if (has_near_form)
                     add_near(view, source, source->x + from_x, source->y + from_y, middle_x, middle_y, near, &sum);
                 else
-                    add_whole(view, source, source->x + from_x, source->y + from_y, middle_x, middle_y, light);
+                    add_whole(view, source, source->x + from_x, source->y + from_y, middle_x, middle_y, ends, light);
             }
             looked_at += starts[cell + 1u] - starts[cell];
             add_light(&level, splat(1.0f), levels[cell]);
         }
     atomic_add(counts + COUNTED_PAIRS, looked_at);
-    if (!view->has_near_form)
+    if (!has_near_form)
         return;
     for (uint vector = 0u; vector < VECTORS; ++vector) {
         const uintv place = vector * LANES + LANE_NUMBERS;
@@ -147,12 +160,62 @@ INLINE void add_around(const CrowdView *const view, __global const uint *const s
     }
 }
 
+// Returns the light of a tile's values at pixels.
+INLINE float3v light_within(__global const float *const values, const floatv across[4], const floatv down[4]) {
+    floatv sums[3];
+    for (uint channel = 0u; channel < 3u; ++channel) {
+        __global const float *const at = values + 16u * channel;
+        sums[channel] = splat(0.0f);
+        for (uint row = 0u; row < 4u; ++row) {
+            floatv in_row = across[0] * at[4u * row];
+            for (uint i = 1u; i < 4u; ++i)
+                in_row = fma(across[i], splat(at[4u * row + i]), in_row);
+            sums[channel] = fma(down[row], in_row, sums[channel]);
+        }
+    }
+    float3v light;
+    light.x = sums[0], light.y = sums[1], light.z = sums[2];
+    return light;
+}
+
+#ifdef WITH_ENDS
+
+// Returns the light of a tile at pixels whose rays end at shares.
+INLINE float3v light_up_to(const CrowdView *const view, __global const float *const table,
+                           __global const float *const values, const floatv across[4], const floatv down[4],
+                           const floatv share) {
+    float3v light = uniform3((float4)(0.0f));
+    const uint counts = as_uint(table[ROW_OF_ENDS - 1u]);
+    const floatv own = slab_of(view, share);
+    uint at = 0u;
+    for (uint slab = 0u; slab <= SLABS; ++slab) {
+        const uint count = slab == SLABS ? counts / WHOLE_BIT : nodes_in(counts, slab);
+        const intv is_in = own == (float)slab;
+        if (count > 0u && any_lane(is_in)) {
+            float nodes[MOST_IN_SLAB];
+            for (uint i = 0u; i < count; ++i)
+                nodes[i] = table[at + i];
+            for (uint i = 0u; i < count; ++i) {
+                const floatv weight = select(splat(0.0f), weight_of_end(nodes, count, i, share), is_in);
+                const float3v there = light_within(values + 48u * (at + i), across, down);
+                light.x = fma(weight, there.x, light.x);
+                light.y = fma(weight, there.y, light.y);
+                light.z = fma(weight, there.z, light.z);
+            }
+        }
+        at += count;
+    }
+    return light;
+}
+#endif
+
 __kernel void draw_crowd(const FilmPart part, const CrowdView view, __global const uint *const restrict starts,
                          __global const CrowdSource *const restrict sources,
                          __global const float4 *const restrict levels, __global const float *const restrict numbers,
                          __global const CrowdTile *const restrict tiles, __global const float *const restrict values,
                          __global const uint *const restrict owners, __global uint *const restrict counts,
-                         const uint first_tile, const uint end_tile, FILM_PARAMETER) {
+                         const uint first_tile, const uint end_tile, __global const float *const restrict shares,
+                         __global const float *const restrict ends_of_tiles, FILM_PARAMETER) {
     const uint number = first_tile + get_global_id(0);
     if (number >= end_tile)
         return;
@@ -161,27 +224,47 @@ __kernel void draw_crowd(const FilmPart part, const CrowdView view, __global con
     const float per_half_side = 1.0f / (float)(4u << level);
     const float from_x = (float)(left + view.left) - (float)(every_other(code) << (3u + level));
     const float from_y = (float)(top + view.above) - (float)(every_other(code >> 1) << (3u + level));
+    __global const float *const value = values + VALUES * slot;
     float3v light[VECTORS];
+    End ends[END_VECTORS];
+#ifdef WITH_ENDS
+    __global const float *const row_of_ends = ends_of_tiles + ROW_OF_ENDS * slot;
+    intv is_dark[VECTORS];
+#endif
     for (uint vector = 0u; vector < VECTORS; ++vector) {
         const uintv place = vector * LANES + LANE_NUMBERS;
         floatv across[4], down[4];
         tile_weights(numbers, fma(to_floatv(place & 7u) + (from_x + 0.5f), splat(per_half_side), splat(-1.0f)), across);
         tile_weights(numbers, fma(to_floatv(place >> 3) + (from_y + 0.5f), splat(per_half_side), splat(-1.0f)), down);
-        floatv sums[3];
-        for (uint channel = 0u; channel < 3u; ++channel) {
-            __global const float *const at = values + 48u * slot + 16u * channel;
-            sums[channel] = splat(0.0f);
-            for (uint row = 0u; row < 4u; ++row) {
-                floatv in_row = across[0] * at[4u * row];
-                for (uint i = 1u; i < 4u; ++i)
-                    in_row = fma(across[i], splat(at[4u * row + i]), in_row);
-                sums[channel] = fma(down[row], in_row, sums[channel]);
-            }
+#ifdef WITH_ENDS
+        float share_of[LANES];
+        for (uint lane = 0u; lane < LANES; ++lane) {
+            const uint at = vector * LANES + lane, x = left + (at & 7u), y = top + (at >> 3);
+            share_of[lane] = shares[min(y, view.height - 1u) * view.width + min(x, view.width - 1u)];
         }
-        light[vector].x = sums[0], light[vector].y = sums[1], light[vector].z = sums[2];
+        const floatv share = LOAD_LANES(share_of);
+        ends[vector] = end_at(&view, share);
+        light[vector] = light_up_to(&view, row_of_ends, value, across, down, share);
+        is_dark[vector] = share <= 0.0f;
+#else
+        light[vector] = light_within(value, across, down);
+#endif
     }
+#ifndef WITH_ENDS
+    ends[0] = whole_ray(&view);
+    const bool is_near = view.has_near_form;
+#else
+    const bool is_near = view.has_near_form && as_uint(row_of_ends[ROW_OF_ENDS - 1u]) == WHOLE_BIT;
+#endif
     if (tiles[slot].is_open != 0u)
-        add_around(&view, starts, sources, levels, code, light, counts);
+        add_around(&view, starts, sources, levels, code, is_near, ends, light, counts);
+#ifdef WITH_ENDS
+    for (uint vector = 0u; vector < VECTORS; ++vector) {
+        light[vector].x = select(light[vector].x, splat(0.0f), is_dark[vector]);
+        light[vector].y = select(light[vector].y, splat(0.0f), is_dark[vector]);
+        light[vector].z = select(light[vector].z, splat(0.0f), is_dark[vector]);
+    }
+#endif
     for (uint vector = 0u; vector < VECTORS; ++vector) {
         float red[LANES], green[LANES], blue[LANES];
         scatter(light[vector].x, red), scatter(light[vector].y, green), scatter(light[vector].z, blue);

@@ -26,6 +26,35 @@ INLINE Rays rays_through(const CrowdView *const view, const floatv u, const floa
     return rays;
 }
 
+// Where rays end: what decay leaves of the light there, how far v goes to there, and the length of the way.
+typedef struct {
+    floatv nearness, advance, per_advance, length;
+} End;
+
+// Returns the end of whole rays.
+INLINE End whole_ray(const CrowdView *const view) {
+    End end;
+    end.nearness = splat(view->nearness), end.advance = splat(view->advance);
+    end.per_advance = splat(1.0f / view->advance), end.length = splat(view->ray_length);
+    return end;
+}
+
+#ifdef WITH_ENDS
+// Returns the end at a share of rays.
+INLINE End end_at(const CrowdView *const view, const floatv share) {
+    End end;
+    const floatv least = max(share, 1e-6f);
+    end.length = view->ray_length * least;
+    end.nearness = splat(1.0f), end.advance = least;
+    if (view->pole > 0.0f) {
+        const floatv per_way = inverse(end.length + view->pole);
+        end.nearness = view->pole * per_way, end.advance = end.length * per_way;
+    }
+    end.per_advance = inverse(end.advance);
+    return end;
+}
+#endif
+
 INLINE floatv root(const floatv x) {
     return 0.5f * twice_sqrt(max(x, SMALL));
 }
@@ -45,9 +74,9 @@ typedef struct {
     floatv f0, f1, f0f1, g, a;
 } RayEnds;
 
-INLINE RayEnds ray_ends(const CrowdView *const view, const floatv begin, const floatv least) {
-    const float n1 = view->nearness;
-    const floatv end = begin + view->ray_length, pole = begin - view->pole;
+INLINE RayEnds ray_ends(const CrowdView *const view, const End *const at, const floatv begin, const floatv least) {
+    const floatv n1 = at->nearness;
+    const floatv end = begin + at->length, pole = begin - view->pole;
     RayEnds ends;
     ends.f0 = root(fma(begin, begin, least));
     ends.f1 = n1 * root(fma(end, end, least));
@@ -57,15 +86,15 @@ INLINE RayEnds ray_ends(const CrowdView *const view, const floatv begin, const f
     return ends;
 }
 
-INLINE floatv inverse_light(const CrowdView *const view, const floatv begin, const floatv least) {
-    const RayEnds ends = ray_ends(view, begin, least);
-    const float n1 = view->nearness, turn = n1 * view->ray_length;
+INLINE floatv inverse_light(const CrowdView *const view, const End *const at, const floatv begin, const floatv least) {
+    const RayEnds ends = ray_ends(view, at, begin, least);
+    const floatv n1 = at->nearness, turn = n1 * at->length;
     const floatv sum = ends.f0 + ends.f1, per_sum = inverse(max(sum, SMALL));
-    const floatv ratio = view->advance * per_sum;
+    const floatv ratio = at->advance * per_sum;
     const floatv m2 = ends.a * ratio * ratio;
     const intv is_between = ends.g < 0.0f;
     const floatv per_root = 0.5f * twice_inverse_sqrt_(max(ends.a, SMALL));
-    const floatv whole = fma(ends.a * per_root, splat(view->advance), sum);
+    const floatv whole = fma(ends.a * per_root, at->advance, sum);
     const floatv above = whole * whole * select(splat(1.0f), ends.f0f1 - ends.g, is_between);
     const floatv below = 2.0f * select(ends.f0f1 + ends.g, least * (turn * turn), is_between);
     const floatv artanh = 0.5f * LN_2 * binary_logarithm(above * inverse(max(below, 1e-36f)));
@@ -74,18 +103,18 @@ INLINE floatv inverse_light(const CrowdView *const view, const floatv begin, con
     const intv is_small = m2 < 0.1f;
     if (any_lane(is_small))
         excess = select(excess, near_artanh(m2), is_small);
-    const float mean = 0.5f * (1.0f + n1);
-    const floatv bent = fma(m2, splat(mean), -0.5f * (n1 - 1.0f) * (ends.f1 - ends.f0) * per_sum);
-    return 2.0f * ratio * fma(bent, excess, splat(mean));
+    const floatv mean = 0.5f * (1.0f + n1);
+    const floatv bent = fma(m2, mean, -0.5f * (n1 - 1.0f) * (ends.f1 - ends.f0) * per_sum);
+    return 2.0f * ratio * fma(bent, excess, mean);
 }
 
-INLINE floatv square_light(const CrowdView *const view, const floatv begin, const floatv least) {
-    const RayEnds ends = ray_ends(view, begin, least);
-    const float n1 = view->nearness, turn = n1 * view->ray_length, d = view->advance, per_d = 1.0f / d;
+INLINE floatv square_light(const CrowdView *const view, const End *const at, const floatv begin, const floatv least) {
+    const RayEnds ends = ray_ends(view, at, begin, least);
+    const floatv n1 = at->nearness, turn = n1 * at->length, d = at->advance, per_d = at->per_advance;
     const floatv rise = (ends.f1 - ends.f0) * (ends.f1 + ends.f0);
     const floatv bulge = 0.25f * d * d * ends.a;
     const floatv middle2 = fma(splat(0.5f), fma(ends.f0, ends.f0, ends.f1 * ends.f1), -bulge);
-    const float slope_n = n1 - 1.0f, mean_n = 0.5f * (1.0f + n1);
+    const floatv slope_n = n1 - 1.0f, mean_n = 0.5f * (1.0f + n1);
     const intv is_short = bulge <= 0.1f * middle2;
     floatv light = splat(0.0f);
     if (any_lane(is_short)) {
@@ -93,8 +122,8 @@ INLINE floatv square_light(const CrowdView *const view, const floatv begin, cons
         for (int k = 0; k < 4; ++k) {
             const float x = k < 2 ? node[k & 1] : -node[k & 1];
             const floatv f2 = fma(fma(bulge, splat(x), 0.5f * rise), splat(x), middle2);
-            const float n = fma(0.5f * slope_n, x, mean_n);
-            light = fma(inverse(f2), splat(0.5f * d * weight[k & 1] * n * n), light);
+            const floatv n = fma(0.5f * slope_n, splat(x), mean_n);
+            light = fma(inverse(f2), 0.5f * weight[k & 1] * d * n * n, light);
         }
     }
     if (!any_lane(!is_short))
@@ -107,7 +136,7 @@ INLINE floatv square_light(const CrowdView *const view, const floatv begin, cons
     const floatv beyond = 2.0f * d * per_sum * arctangent_ratio(t * t);
     const floatv angle = select(beyond, fma(splat(M_PI_F), per_root, -beyond), ends.g < 0.0f);
     const floatv growth = LN_2 * binary_logarithm(ends.f1 * inverse(max(ends.f0, 1e-18f)));
-    const floatv peak_n = fma(splat(slope_n), -0.5f * rise * per_a * per_d * per_d, splat(mean_n));
+    const floatv peak_n = fma(slope_n, -0.5f * rise * per_a * per_d * per_d, mean_n);
     const floatv curvature = slope_n * slope_n * per_d * per_d * per_a;
     const floatv slope = 2.0f * slope_n * per_d * per_a * peak_n;
     const floatv at_peak = fma(-curvature * per_a, root_least * root_least, peak_n * peak_n);
@@ -116,9 +145,10 @@ INLINE floatv square_light(const CrowdView *const view, const floatv begin, cons
 }
 
 // Returns the light along rays of a point so far beside their lines, squared, and so far along them.
-INLINE floatv light_beside(const CrowdView *const view, const floatv begin, const floatv least) {
+INLINE floatv light_beside(const CrowdView *const view, const End *const end, const floatv begin, const floatv least) {
     const floatv beside = max(least, view->floor2);
-    return view->scale * (view->is_square ? square_light(view, begin, beside) : inverse_light(view, begin, beside));
+    return view->scale *
+           (view->is_square ? square_light(view, end, begin, beside) : inverse_light(view, end, begin, beside));
 }
 
 // Returns the square of (u, v, 1) x (u', v', 1), of which a and b are u - u' and v - v'.
@@ -127,15 +157,21 @@ INLINE floatv cross2(const floatv a, const floatv b, const float u, const float 
     return fma(a, a, fma(b, b, c * c));
 }
 
-// Returns the light of a point at the slopes u, v and z along the axis of view; `soft4`: the fourth power of an angle
-// by which the angle between ray and point is softened, times the fourth power of the distance.
-INLINE floatv light_of_place(const CrowdView *const view, const Rays *const rays, const float u, const float v,
-                             const float z, const floatv beside2, const float soft4) {
-    floatv least = z * z * beside2 * rays->per_stretch * rays->per_stretch;
+// How rays pass a point: the squared distance of their lines, and the way to the foot of the perpendicular.
+typedef struct {
+    floatv least, along;
+} Passing;
+
+// Returns that of a point at the slopes u, v and z along the axis of view; `soft4`: the fourth power of an angle by
+// which the angle between ray and point is softened, times the fourth power of the distance.
+INLINE Passing passing(const Rays *const rays, const float u, const float v, const float z, const floatv beside2,
+                       const float soft4) {
+    Passing it;
+    it.least = z * z * beside2 * rays->per_stretch * rays->per_stretch;
     if (soft4 > 0.0f)
-        least = root(fma(least, least, splat(soft4)));
-    const floatv along = z * fma(rays->u, splat(u), fma(rays->v, splat(v), splat(1.0f))) * rays->per_stretch;
-    return light_beside(view, rays->begin - along, least);
+        it.least = root(fma(it.least, it.least, splat(soft4)));
+    it.along = z * fma(rays->u, splat(u), fma(rays->v, splat(v), splat(1.0f))) * rays->per_stretch;
+    return it;
 }
 
 // Returns what a peak is multiplied with at an angle, from the square of its sine: -ln of that, or 1 over the sine.

@@ -36,6 +36,10 @@ typedef struct {
     float thickness;    // of a core as pixels see it that are means over their squares, a slope; 0 where they are not
     uint across;        // cells of the highest level in a row, a power of 2
     uint block;         // cells on each side of a tile that belong to what lies around it
+    uint shallow;       // levels below it have limits
+    uint is_along_axis; // depths are lengths along the axis of view
+    float slab_begin;   // the share of rays at which slabs begin
+    float per_slab;     // slabs by the share
     uint padding;
 } CrowdView;
 CHECK_SIZE(CrowdView, SIZEOF_CROWDVIEW);

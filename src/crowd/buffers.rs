@@ -3,9 +3,12 @@
 use bytemuck::Pod;
 
 use super::COUNTS;
-use super::pack::{CrowdSource, CrowdTile, CrowdView};
+use super::pack::{CrowdSource, CrowdTile, CrowdView, MOST_ENDS, ROW_OF_ENDS};
 use crate::error::Result;
 use crate::opencl::{Argument, Compute, DeviceBuffer};
+
+/// Numbers of the ranges of ends in a tile of 8 pixels.
+const ROW_OF_RANGES: usize = 18;
 
 /// Rays of a tile.
 pub(super) const NODES_OF_TILE: usize = 16;
@@ -27,6 +30,10 @@ pub(super) struct Buffers {
     pub owners: Kept<u32>,
     pub is_wanted: Kept<u32>,
     pub counts: Kept<u32>,
+    /// Where rays end: of each pixel, of tiles of 8 pixels, and at the nodes of all tiles.
+    pub shares: Kept<f32>,
+    pub ranges: Kept<f32>,
+    pub ends: Kept<f32>,
 }
 
 /// A buffer that grows when it must.
@@ -77,11 +84,14 @@ impl Buffers {
             owners: Kept::new("which tile has which pixels"),
             is_wanted: Kept::new("which cells are looked at"),
             counts: Kept::new("the counts of a crowd"),
+            shares: Kept::new("the ends of rays"),
+            ranges: Kept::new("the ranges of ends"),
+            ends: Kept::new("the ends in tiles"),
         }
     }
 
-    /// Makes room for what a view needs.
-    pub fn reserve(&mut self, compute: &Compute, view: &CrowdView) -> Result<()> {
+    /// Makes room for what a view needs, whose rays end at depths or are whole.
+    pub fn reserve(&mut self, compute: &Compute, view: &CrowdView, has_ends: bool) -> Result<()> {
         let cells = view.cells_below(view.top + 1);
         let tiles: usize = (0..=view.top).map(|level| view.tile_count(level)).sum();
         let deep = cells - view.cells_below(view.base);
@@ -91,13 +101,20 @@ impl Buffers {
         self.peaks.reserve(compute, cells)?;
         self.levels.reserve(compute, cells)?;
         self.nodes.reserve(compute, deep * view.nodes_of_cell())?;
-        let shallow = view.cells_below(view.base) * (view.nodes * view.nodes) as usize;
+        let shallow = view.cells_below(view.shallow) * (view.nodes * view.nodes) as usize;
         self.limits.reserve(compute, shallow)?;
         self.tiles.reserve(compute, tiles)?;
-        self.values.reserve(compute, 3 * NODES_OF_TILE * tiles)?;
-        let rows = view.height.div_ceil(8);
-        self.owners
-            .reserve(compute, (view.tile_columns * rows) as usize)?;
+        let smallest = (view.tile_columns * view.height.div_ceil(8)) as usize;
+        let mut values = tiles;
+        if has_ends {
+            values = MOST_ENDS * tiles;
+            let pixels = view.width as usize * view.height as usize;
+            self.shares.reserve(compute, pixels)?;
+            self.ranges.reserve(compute, ROW_OF_RANGES * smallest)?;
+            self.ends.reserve(compute, ROW_OF_ENDS * tiles)?;
+        }
+        self.values.reserve(compute, 3 * NODES_OF_TILE * values)?;
+        self.owners.reserve(compute, smallest)?;
         self.is_wanted.reserve(compute, cells)?;
         self.counts.reserve(compute, COUNTS)?;
         Ok(())

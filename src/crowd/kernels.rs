@@ -11,6 +11,8 @@ use crate::opencl::{
 #[derive(Debug)]
 pub(super) struct Kernels {
     pub clear: Kernel,
+    /// Where rays end at depths.
+    pub find_ends: Option<Kernel>,
     pub find_peaks: Kernel,
     pub sum_cells: Kernel,
     pub sum_quarters: Kernel,
@@ -20,19 +22,23 @@ pub(super) struct Kernels {
     pub draw: Kernel,
 }
 
-/// Builds them.
+/// Builds them, for rays that end at depths or are whole.
 ///
 /// # Errors
 /// As [`Program::build`].
 pub(super) fn build(
     compute: &Compute,
-    format: FilmFormat,
+    (format, has_ends): (FilmFormat, bool),
     options: &RendererOptions,
 ) -> Result<(Kernels, Program)> {
     let text = sources().resolve("crowd/draw.cl");
-    let program = Program::build(compute, text, &definitions(format), options)?;
+    let more = if has_ends { " -D WITH_ENDS" } else { "" };
+    let definitions = definitions(format) + more;
+    let program = Program::build(compute, text, &definitions, options)?;
+    let find_ends = has_ends.then(|| program.kernel("find_ends"));
     let kernels = Kernels {
         clear: program.kernel("clear_crowd")?,
+        find_ends: find_ends.transpose()?,
         find_peaks: program.kernel("find_peaks")?,
         sum_cells: program.kernel("sum_cells")?,
         sum_quarters: program.kernel("sum_quarters")?,

@@ -18,9 +18,10 @@ use opencl3::event::Event;
 
 use crate::cost::FrameCost;
 use crate::error::Result;
-use crate::image::ImageSize;
+use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{
-    Argument, Compute, Film, FilmFormat, Handle, Kernel, RendererOptions, run_time,
+    Argument, Compute, Film, FilmFormat, Handle, Kernel, RawMemory, RendererOptions,
+    UploadedShared, run_time,
 };
 use crate::scene::{Camera, CrowdSight, Integration, List, Points, Profile, Scene};
 use buffers::{Buffers, NODES_OF_TILE};
@@ -46,11 +47,13 @@ const PIXELS_OF_TILE: u64 = 64;
 pub(crate) struct Crowd {
     options: RendererOptions,
     profile: Profile,
-    kernels: HashMap<FilmFormat, Kernels>,
+    /// Of a format, for rays that end at depths, or are whole.
+    kernels: HashMap<(FilmFormat, bool), Kernels>,
     /// Of what points were sorted.
     known: Option<(Known, Sorted)>,
     sorter: Sorter,
     buffers: Buffers,
+    depths: UploadedShared<f32>,
     /// Whether tiles have the light of the last plan.
     is_lit: bool,
     under_way: Vec<Handle<Event>>,
@@ -71,6 +74,9 @@ struct Known {
 pub(crate) struct CrowdPlan {
     view: CrowdView,
     format: FilmFormat,
+    /// Whether rays end at depths; depths of others on the device, `None`: the scene's.
+    has_ends: bool,
+    depths: Option<RawMemory>,
 }
 
 impl Crowd {
@@ -83,6 +89,7 @@ impl Crowd {
             known: None,
             sorter: Sorter::default(),
             buffers: Buffers::new(),
+            depths: UploadedShared::new("the depth image"),
             is_lit: false,
             under_way: Vec::new(),
             cost: FrameCost::default(),
@@ -99,8 +106,9 @@ impl Crowd {
         self.kernels.len()
     }
 
-    /// Plans the crowd of a valid scene whose points all belong to crowds but for those that are too bright: sees and
-    /// sorts them, and makes sure that kernels are built. `None`: the scene has none.
+    /// Plans the crowd of a valid scene whose points all belong to crowds but for those that are too bright, behind
+    /// depths that the device has, if there are any: sees and sorts them, and makes sure that kernels are built.
+    /// `None`: the scene has none.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
@@ -111,6 +119,7 @@ impl Crowd {
         &mut self,
         compute: &Compute,
         scene: &Scene,
+        there: Option<(RawMemory, DepthAlong)>,
         format: FilmFormat,
     ) -> Result<Option<CrowdPlan>> {
         self.cost = FrameCost::default();
@@ -118,9 +127,12 @@ impl Crowd {
         if !scene.points.iter().any(is_own) {
             return Ok(None);
         }
-        if let Entry::Vacant(entry) = self.kernels.entry(format) {
-            let (kernels, program) = kernels::build(compute, format, &self.options)?;
-            let kernels = self_test(compute, format, &self.options, (kernels, &program))?;
+        let own = scene.depth.as_ref().map(DepthImage::along);
+        let along = there.map(|(_, along)| along).or(own);
+        let kind = (format, along.is_some());
+        if let Entry::Vacant(entry) = self.kernels.entry(kind) {
+            let (kernels, program) = kernels::build(compute, kind, &self.options)?;
+            let kernels = self_test(compute, kind, &self.options, (kernels, &program))?;
             entry.insert(kernels);
         }
         let sight = CrowdSight::new(scene)?;
@@ -134,10 +146,14 @@ impl Crowd {
             Some((same, sorted)) if *same == known => *sorted,
             _ => {
                 self.known = None;
-                let sorted = self.sorter.sort(scene, &sight, self.profile);
+                let sorted = self.sorter.see(scene, &sight, self.profile);
                 let (sorter, buffers) = (&self.sorter, &mut self.buffers);
-                buffers.sources.write(compute, &sorter.sources)?;
-                buffers.cells.write(compute, &sorter.cells)?;
+                let count = sorted.sources as usize;
+                let cells = buffers.cells.reserve(compute, count)?;
+                let sources = buffers.sources.reserve(compute, count)?;
+                cells.fill(compute, count, |cells| {
+                    sources.fill(compute, count, |sources| sorter.sort(sources, cells))
+                })??;
                 buffers.starts.write(compute, &sorter.starts)?;
                 buffers.rest.write(compute, &sorter.rest)?;
                 self.known = Some((known, sorted));
@@ -147,12 +163,19 @@ impl Crowd {
         if sorted.sources + sorted.rest == 0 {
             return Ok(None);
         }
-        let view = pack::view(scene, self.profile, &sorted)?;
-        self.buffers.reserve(compute, &view)?;
+        let view = pack::view(scene, self.profile, &sorted, along)?;
+        self.buffers.reserve(compute, &view, along.is_some())?;
+        let depths = scene.depth.as_ref().map(DepthImage::shared_values);
+        self.depths.upload(compute, depths)?;
         self.buffers.numbers.write(compute, &view.numbers())?;
         self.buffers.roots.write(compute, &view.roots())?;
         self.is_lit = false;
-        Ok(Some(CrowdPlan { view, format }))
+        Ok(Some(CrowdPlan {
+            view,
+            format,
+            has_ends: along.is_some(),
+            depths: there.map(|(memory, _)| memory),
+        }))
     }
 
     /// Enqueues what draws whole rows of pixels into a film. Nothing here waits.
@@ -166,7 +189,7 @@ impl Crowd {
         pixels: Range<u32>,
         film: &mut Film,
     ) -> Result<()> {
-        let Some(kernels) = self.kernels.get(&plan.format) else {
+        let Some(kernels) = self.kernels.get(&(plan.format, plan.has_ends)) else {
             return Ok(());
         };
         let (view, buffers) = (&plan.view, &self.buffers);
@@ -174,6 +197,10 @@ impl Crowd {
         let group = match lanes {
             1 => GROUP,
             _ => 1,
+        };
+        let depths: &dyn Argument = match &plan.depths {
+            Some(memory) => memory,
+            None => self.depths.argument(),
         };
         let mut enqueue = Enqueue {
             compute,
@@ -184,7 +211,7 @@ impl Crowd {
             under_way: &mut self.under_way,
         };
         if !self.is_lit {
-            enqueue.light_tiles(kernels)?;
+            enqueue.light_tiles(kernels, depths)?;
             self.is_lit = true;
         }
         let first = pixels.start / view.width / 8 * view.tile_columns;
@@ -202,6 +229,8 @@ impl Crowd {
             ("counts", buffers.counts.argument()),
             ("first_tile", &first),
             ("end_tile", &end),
+            ("shares", buffers.shares.argument()),
+            ("ends_of_tiles", buffers.ends.argument()),
         ];
         arguments.extend(drawn.named());
         enqueue.launch(&kernels.draw, &arguments, (end - first) as usize)
@@ -223,6 +252,7 @@ impl Crowd {
             self.cost.launches += 1;
         }
         outcome?;
+        self.depths.settle(compute)?;
         if let (Some(counts), true) = (&self.buffers.counts.buffer, self.is_lit) {
             let mut found = [0_u32; COUNTS];
             counts.read(compute, &mut found)?;
@@ -264,8 +294,18 @@ impl Enqueue<'_> {
     }
 
     /// Enqueues all that comes before pixels.
-    fn light_tiles(&mut self, kernels: &Kernels) -> Result<()> {
+    fn light_tiles(&mut self, kernels: &Kernels, depths: &dyn Argument) -> Result<()> {
         let (view, buffers) = (self.view, self.buffers);
+        let ranges = ("ranges", buffers.ranges.argument());
+        if let Some(find_ends) = &kernels.find_ends {
+            let shares = ("shares", buffers.shares.argument());
+            let tiles = view.tile_columns * view.height.div_ceil(8);
+            self.launch(
+                find_ends,
+                &[("depths", depths), shares, ranges],
+                tiles as usize,
+            )?;
+        }
         let cells = |level: u32| view.cells(level);
         let peaks = ("peaks", buffers.peaks.argument());
         let levels = ("levels", buffers.levels.argument());
@@ -294,7 +334,10 @@ impl Enqueue<'_> {
             )?;
         }
         let base = ("level", &view.base as &dyn Argument);
-        let laid = [base, starts, codes, sources, numbers, is_wanted, nodes];
+        let [is_flat, is_deep] = [&0_u32, &1_u32].map(|it| ("has_depths", it as &dyn Argument));
+        let laid = [
+            base, is_deep, starts, codes, sources, numbers, is_wanted, nodes,
+        ];
         self.launch(&kernels.lay_sources, &laid, cells(view.base))?;
         for level in view.base + 1..=view.top {
             let laid = [("level", &level as &dyn Argument), starts, numbers, nodes];
@@ -304,9 +347,11 @@ impl Enqueue<'_> {
         let limits = ("limits", buffers.limits.argument());
         for level in (0..=view.top).rev() {
             let argument = ("level", &level as &dyn Argument);
-            if level < view.base {
+            if level < view.shallow {
                 let nodes = ("nodes", buffers.limits.argument());
-                let laid = [argument, starts, codes, sources, numbers, is_wanted, nodes];
+                let laid = [
+                    argument, is_flat, starts, codes, sources, numbers, is_wanted, nodes,
+                ];
                 self.launch(&kernels.lay_sources, &laid, cells(level))?;
             }
             let tiles = view.tile_count(level);
@@ -317,6 +362,8 @@ impl Enqueue<'_> {
                 ("next_slot", &next),
                 ("roots", buffers.roots.argument()),
                 starts,
+                ("codes", buffers.cells.argument()),
+                sources,
                 peaks,
                 levels,
                 nodes,
@@ -328,6 +375,8 @@ impl Enqueue<'_> {
                 ("owners", buffers.owners.argument()),
                 is_wanted,
                 counts,
+                ranges,
+                ("ends_of_tiles", buffers.ends.argument()),
             ];
             self.launch(&kernels.light_tiles, &arguments, tiles)?;
             first = next;

@@ -1,13 +1,13 @@
 //! The structs of `cl/crowd/types.h`, in the same order, and what they say of a scene and its grid.
 
 use crate::error::Result;
-use crate::image::ImageSize;
+use crate::image::{DepthAlong, ImageSize};
 use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
 use crate::scene::{CORE_FLOOR, CrowdSight, Profile, Scene};
 
 device_struct! {
     /// The grid, what light becomes along its rays, and what is allowed.
-    CrowdView [128] {
+    CrowdView [144] {
         first_u: f32 = 0,
         first_v: f32 = 4,
         step_u: f32 = 8,
@@ -39,7 +39,11 @@ device_struct! {
         thickness: f32 = 112,
         across: u32 = 116,
         block: u32 = 120,
-        padding: u32 = 124,
+        shallow: u32 = 124,
+        is_along_axis: u32 = 128,
+        slab_begin: f32 = 132,
+        per_slab: f32 = 136,
+        padding: u32 = 140,
     }
 }
 
@@ -108,11 +112,30 @@ pub(super) struct Sorted {
     pub t: [f64; 2],
 }
 
-/// Packs what a scene says of its light, and of the grid.
+/// Of a tile: ends of rays at most, and numbers in a row of the table of ends.
+pub(super) const MOST_ENDS: usize = 25;
+pub(super) const ROW_OF_ENDS: usize = 26;
+
+/// Slabs of depth in and around a crowd, between the one before them and the one behind; how far before it and behind
+/// it they go, in its own extents.
+const SLABS_INSIDE: f64 = 6.0;
+const AROUND: [f64; 2] = [0.5, 2.0];
+
+/// Where rays end, light changes as fast with a source's depth as with the end: so many more depths, and cells with
+/// depths so far down that a level has no more than these in a row.
+const MORE_DEPTHS: u32 = 4;
+const MOST_CELLS_ACROSS: u32 = 256;
+
+/// Packs what a scene says of its light, and of the grid; `along` is what depths are measured along that end rays.
 ///
 /// # Errors
 /// As [`CrowdSight::new`].
-pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<CrowdView> {
+pub(super) fn view(
+    scene: &Scene,
+    profile: Profile,
+    sorted: &Sorted,
+    along: Option<DepthAlong>,
+) -> Result<CrowdView> {
     let sight = CrowdSight::new(scene)?;
     let ImageSize { width, height } = scene.image;
     let length = sight.ray_length;
@@ -147,6 +170,16 @@ pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<C
     let is_dense =
         sorted.sources >= MANY && 8.0 * pixel * f64::from(2 * block + 1) < WIDEST_OF_MANY;
     let depths = (2.5 + 2.0 * (high - low)).ceil() as u32 + more + u32::from(is_square);
+    let shallow = sight.base(block);
+    let (base, depths) = match along {
+        None => (shallow, depths),
+        Some(_) => {
+            let is_coarse = |level: &u32| sight.across << (sight.top - level) <= MOST_CELLS_ACROSS;
+            let least = (0..sight.top).find(is_coarse).unwrap_or(sight.top);
+            (shallow.min(least), depths.max(4) + MORE_DEPTHS)
+        }
+    };
+    let [begin, end] = slabs(scene, &sight, sorted.t);
     let tiles = |level: u32, offset: u32, size: u32| {
         let side = 8 << level;
         (offset + size).div_ceil(side) - offset / side
@@ -171,7 +204,7 @@ pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<C
         nodes: nodes.min(MOST_NODES as u32),
         depths: depths.clamp(4, MOST_DEPTHS as u32),
         top: sight.top,
-        base: sight.base(block),
+        base,
         width,
         height,
         left: sight.left,
@@ -180,12 +213,38 @@ pub(super) fn view(scene: &Scene, profile: Profile, sorted: &Sorted) -> Result<C
         rest: sorted.rest,
         roots,
         tile_columns: width.div_ceil(8),
-        has_near_form: u32::from(sight.base(block) > 0 || is_dense),
+        has_near_form: u32::from(shallow > 0 || is_dense),
         thickness: thickness as f32,
         across: sight.across,
         block,
+        shallow,
+        is_along_axis: u32::from(!matches!(along, None | Some(DepthAlong::Ray))),
+        slab_begin: begin as f32,
+        per_slab: (SLABS_INSIDE / (end - begin).max(1e-3)) as f32,
         padding: 0,
     })
+}
+
+/// Returns the shares of rays between which there are slabs of depth: in and around the crowd, as far as rays end
+/// there.
+fn slabs(scene: &Scene, sight: &CrowdSight, t: [f64; 2]) -> [f64; 2] {
+    let share = |z: f64| (z - sight.near) / sight.ray_length;
+    let [low, high] = t.map(f64::exp);
+    let wide = high - low;
+    let crowd = [low - AROUND[0] * wide, high + AROUND[1] * wide].map(share);
+    let Some(depth) = &scene.depth else {
+        return crowd;
+    };
+    let (mut first, mut last) = (f32::INFINITY, 0.0_f32);
+    for length in depth.as_slice().iter().filter(|it| it.is_finite()) {
+        (first, last) = (first.min(*length), last.max(*length));
+    }
+    let ends = [first, last].map(|length| share(f64::from(length)).clamp(0.0, 1.0));
+    let both = [crowd[0].max(ends[0]), crowd[1].min(ends[1])];
+    match both[0] < both[1] {
+        true => both,
+        false => ends,
+    }
 }
 
 impl CrowdView {

@@ -6,9 +6,9 @@ use glam::DVec3;
 use super::Crowd;
 use super::kernels::Kernels;
 use crate::error::{Error, Result};
-use crate::image::ImageSize;
+use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{Compute, Film, FilmFormat, Program, RendererOptions};
-use crate::reference::light_of_points;
+use crate::reference::light_of_points_up_to;
 use crate::scene::{
     Antialias, Camera, Decay, Measure, Method, PointList, Points, Profile, Ray, Scene,
 };
@@ -20,10 +20,10 @@ const SIZE: ImageSize = ImageSize {
 };
 
 /// Every so many pixels are looked at.
-const EVERY: usize = 5;
+const EVERY: usize = 9;
 
-/// More than a crowd's limit for one of them; some tiles are open to the end and some are not.
-const COUNT: u32 = 700;
+/// So many that cells have more of them than nodes; some tiles are open to the end and some are not.
+const COUNT: u32 = 5000;
 
 /// The tolerance that is asked for; the error that a pixel may have, which is also for half floats.
 const TOLERANCE: f64 = 1e-4;
@@ -35,7 +35,7 @@ const LIMIT: f64 = 20.0 * TOLERANCE;
 /// [`Error::SelfTest`] if they compute wrong.
 pub(super) fn self_test(
     compute: &Compute,
-    format: FilmFormat,
+    kind: (FilmFormat, bool),
     options: &RendererOptions,
     (kernels, program): (Kernels, &Program),
 ) -> Result<Kernels> {
@@ -44,12 +44,12 @@ pub(super) fn self_test(
         return Ok(kernels);
     }
     let mut tester = Crowd::new(options, Profile::Inverse);
-    tester.kernels.insert(format, kernels);
+    tester.kernels.insert(kind, kernels);
     for profile in [Profile::Inverse, Profile::InverseSquare] {
         tester.profile = profile;
         for decay in [None, Some(Decay::new(0.3, 0.2))] {
-            let scene = scene(profile, decay)?;
-            let found = tester.light(compute, &scene, format)?;
+            let scene = scene(profile, decay, kind.1)?;
+            let found = tester.light(compute, &scene, kind.0)?;
             if let Some(reason) = difference(&scene, &found) {
                 let device = compute.device();
                 return Err(Error::SelfTest {
@@ -61,7 +61,7 @@ pub(super) fn self_test(
         }
     }
     program.mark_tested();
-    tester.kernels.remove(&format).ok_or_else(|| {
+    tester.kernels.remove(&kind).ok_or_else(|| {
         Error::Unsupported("the kernels of crowds were lost in their test".to_owned())
     })
 }
@@ -76,7 +76,7 @@ impl Crowd {
     ) -> Result<Vec<[f32; 4]>> {
         let pixels = SIZE.pixels();
         let mut found = vec![[0.0; 4]; pixels];
-        if let Some(plan) = self.plan(compute, scene, format)? {
+        if let Some(plan) = self.plan(compute, scene, None, format)? {
             let mut film = Film::in_format(compute, format, SIZE.width, SIZE.height)?;
             film.reserve_band(compute, pixels, 1)?;
             self.draw(compute, &plan, 0..pixels as u32, &mut film)?;
@@ -87,7 +87,7 @@ impl Crowd {
     }
 }
 
-fn scene(profile: Profile, decay: Option<Decay>) -> Result<Scene> {
+fn scene(profile: Profile, decay: Option<Decay>, has_ends: bool) -> Result<Scene> {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.3, -4.0, 0.5), DVec3::ZERO));
     scene.image = SIZE;
     scene.camera.fov_y = 22.0;
@@ -104,8 +104,19 @@ fn scene(profile: Profile, decay: Option<Decay>) -> Result<Scene> {
     let (places, lights) = ((0..COUNT).map(place), (0..COUNT).map(light));
     let list = PointList::with_lights(places.collect(), lights.collect())?;
     let mut points = Points::new(list);
-    (points.profile, points.coefficient) = (profile, 1e-3);
+    (points.profile, points.coefficient) = (profile, 1e-4);
     scene.points.push(points);
+    if has_ends {
+        // Steps of the width of a few pixels, within the crowd, before it, and nowhere.
+        let end = |k: usize| match (k / 7) % 4 {
+            0 => f32::INFINITY,
+            1 => 3.7,
+            2 => 2.1,
+            _ => 3.0 + 0.02 * (k % SIZE.width as usize) as f32,
+        };
+        let depths = (0..SIZE.pixels()).map(end).collect();
+        scene.depth = Some(DepthImage::new(SIZE, DepthAlong::Axis, depths)?);
+    }
     Ok(scene)
 }
 
@@ -114,8 +125,16 @@ fn difference(scene: &Scene, found: &[[f32; 4]]) -> Option<String> {
     let plane = scene.view_plane();
     let pixels: Vec<usize> = (0..found.len()).step_by(EVERY).collect();
     let ray = |index: &usize| plane.ray(*index as u32 % SIZE.width, *index as u32 / SIZE.width);
-    let rays: Vec<Ray> = pixels.iter().map(ray).collect();
-    for (index, light) in pixels.into_iter().zip(light_of_points(scene, &rays)) {
+    let end = |index: &usize, ray: &Ray| {
+        let depth = scene.depth.as_ref();
+        depth.map_or(1.0, |it| plane.end(ray, it.as_slice()[*index], it.along()))
+    };
+    let up_to = |index: &usize| {
+        let ray = ray(index);
+        (ray, end(index, &ray))
+    };
+    let rays: Vec<(Ray, f64)> = pixels.iter().map(up_to).collect();
+    for (index, light) in pixels.into_iter().zip(light_of_points_up_to(scene, &rays)) {
         for (found, expected) in found[index].iter().zip(light) {
             let is_right = (f64::from(*found) - expected).abs() <= LIMIT * expected;
             if !is_right {

@@ -4,7 +4,9 @@ use crate::opencl::{SHARED, SourceFile, Sources, embed};
 
 const FILES: &[SourceFile<'static>] = embed!(
     "crowd/build.h",
+    "crowd/cells.h",
     "crowd/draw.cl",
+    "crowd/ends.h",
     "crowd/nodes.h",
     "crowd/point.h",
     "crowd/tiles.cl",

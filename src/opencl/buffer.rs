@@ -6,7 +6,8 @@ use std::ptr;
 use bytemuck::Pod;
 use opencl3::event::Event;
 use opencl3::memory::{
-    Buffer, CL_MAP_READ, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_WRITE, CL_MEM_USE_HOST_PTR, ClMem,
+    Buffer, CL_MAP_READ, CL_MAP_WRITE_INVALIDATE_REGION, CL_MEM_ALLOC_HOST_PTR, CL_MEM_READ_WRITE,
+    CL_MEM_USE_HOST_PTR, ClMem,
 };
 use opencl3::types::{CL_FALSE, CL_TRUE, cl_mem};
 
@@ -150,6 +151,43 @@ impl<T: Pod> DeviceBuffer<T> {
         .map(Handle::new)
         .map_err(failed(&compute.device.name, "clEnqueueWriteBuffer"))?;
         Ok(())
+    }
+
+    /// Has the first elements made where they are, of which nothing is left, after all earlier commands of the queue:
+    /// nothing is copied where device and host share their memory.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if mapping fails or there are fewer elements.
+    pub(crate) fn fill<R>(
+        &mut self,
+        compute: &Compute,
+        len: usize,
+        make: impl FnOnce(&mut [T]) -> R,
+    ) -> Result<R> {
+        self.check_len(compute, "clEnqueueMapBuffer", len)?;
+        if len == 0 {
+            return Ok(make(&mut []));
+        }
+        let mut pointer = ptr::null_mut::<c_void>();
+        // SAFETY: the range lies within the buffer; the pointer is used only until it is unmapped.
+        unsafe {
+            compute.queue.enqueue_map_buffer(
+                &self.buffer,
+                CL_TRUE,
+                CL_MAP_WRITE_INVALIDATE_REGION,
+                0,
+                len * size_of::<T>(),
+                &mut pointer,
+                &[],
+            )
+        }
+        .map(Handle::new)
+        .map_err(failed(&compute.device.name, "clEnqueueMapBuffer"))?;
+        // SAFETY: the mapping is of so many elements, aligned as buffers are, and any bits are a value; nobody else has
+        // it until it is unmapped.
+        let made = make(unsafe { std::slice::from_raw_parts_mut(pointer.cast::<T>(), len) });
+        self.unmap(compute, pointer.cast_const().cast())?;
+        Ok(made)
     }
 
     /// Copies the first elements to `target` after all earlier commands of the queue, and waits for it.

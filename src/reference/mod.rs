@@ -28,7 +28,7 @@ pub(crate) use mesh::see_meshes;
 pub use mesh::{MeshRay, mesh_rays};
 pub(crate) use particles::particle_light;
 #[doc(hidden)]
-pub use points::light_of_points;
+pub use points::{light_of_points, light_of_points_up_to};
 #[doc(hidden)]
 pub use quadrature::integrate;
 pub(crate) use surface::see_surfaces;

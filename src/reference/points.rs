@@ -11,13 +11,22 @@ use crate::threads;
 /// measure. Of decays, those of power 2; points have neither radius nor reach. Next to the pole of a decay, behind
 /// where a ray begins, it has few digits.
 pub fn light_of_points(scene: &Scene, rays: &[Ray]) -> Vec<[f64; 3]> {
-    let mut lights: Vec<([f64; 3], Ray)> = rays.iter().map(|ray| ([0.0; 3], *ray)).collect();
+    let whole: Vec<(Ray, f64)> = rays.iter().map(|ray| (*ray, 1.0)).collect();
+    light_of_points_up_to(scene, &whole)
+}
+
+/// Returns the light of all points of a scene along rays of which each ends at a share of its length, as
+/// [`light_of_points`] does.
+#[must_use]
+pub fn light_of_points_up_to(scene: &Scene, rays: &[(Ray, f64)]) -> Vec<[f64; 3]> {
+    let mut lights: Vec<([f64; 3], &(Ray, f64))> = rays.iter().map(|ray| ([0.0; 3], ray)).collect();
     threads::for_each_chunk(&mut lights, 1, |_, chunk| {
-        for (light, ray) in chunk {
+        for (light, (ray, end)) in chunk {
             let mut sum = DVec3::ZERO;
             for points in scene.points.iter() {
                 for (index, point) in points.points.positions().iter().enumerate() {
-                    sum += points.light(index) * along(ray, *point, points.profile, scene.decay);
+                    let here = along(ray, *end, *point, points.profile, scene.decay);
+                    sum += points.light(index) * here;
                 }
             }
             *light = (sum * scene.integration.scale(ray.span.length())).to_array();
@@ -26,8 +35,8 @@ pub fn light_of_points(scene: &Scene, rays: &[Ray]) -> Vec<[f64; 3]> {
     lights.into_iter().map(|(light, _)| light).collect()
 }
 
-/// Returns the integral of `zeta / d` or `zeta / d^2` over s from 0 to 1.
-fn along(ray: &Ray, point: DVec3, profile: Profile, decay: Option<Decay>) -> f64 {
+/// Returns the integral of `zeta / d` or `zeta / d^2` over s from 0 to an end.
+fn along(ray: &Ray, end: f64, point: DVec3, profile: Profile, decay: Option<Decay>) -> f64 {
     let from = ray.origin - point;
     let length2 = ray.span.length_squared();
     let (length, b0) = (length2.sqrt(), from.dot(ray.span));
@@ -39,8 +48,8 @@ fn along(ray: &Ray, point: DVec3, profile: Profile, decay: Option<Decay>) -> f64
         let beside = beside2.sqrt();
         let at = |s: f64| (s + foot) * length / beside;
         return match is_square {
-            true => (at(1.0).atan() - at(0.0).atan()) / (beside * length),
-            false => (at(1.0).asinh() - at(0.0).asinh()) / length,
+            true => (at(end).atan() - at(0.0).atan()) / (beside * length),
+            false => (at(end).asinh() - at(0.0).asinh()) / length,
         };
     };
     // X(v) = a v^2 + 2 b v + |span|^2.
@@ -60,7 +69,7 @@ fn along(ray: &Ray, point: DVec3, profile: Profile, decay: Option<Decay>) -> f64
             false => b * a.powf(-1.5) * turn.asinh() - x.sqrt() / a,
         }
     };
-    alpha * (primitive(1.0) - primitive(0.0))
+    alpha * (primitive(end) - primitive(0.0))
 }
 
 #[cfg(test)]

@@ -92,7 +92,7 @@ impl Engines {
         self.has_textures = textures.is_some();
         let mut crowds = [None, None];
         for (plan, crowd) in crowds.iter_mut().zip(&mut self.crowds) {
-            *plan = crowd.plan(compute, scene, format)?;
+            *plan = crowd.plan(compute, scene, depths, format)?;
         }
         self.has_crowds = crowds.each_ref().map(Option::is_some);
         // Where nothing is drawn, somebody draws black.

@@ -111,9 +111,6 @@ impl Renderer {
     ) -> Result<Event> {
         self.check(scene)?;
         self.host_renderer()?;
-        // Crowds know no depths that a host has on the device.
-        let apart = (depth.is_some() && scene.has_points()).then(|| scene.with_points_apart());
-        let scene = apart.as_ref().unwrap_or(scene);
         let simulated = self.simulated(scene)?;
         let scene = simulated.as_ref().unwrap_or(scene);
         if self.is_joined(scene)? {

@@ -32,7 +32,8 @@ impl Renderer {
 
     /// Returns the parts of a scene whose surfaces were seen, if it has any.
     pub(super) fn parts_of(&mut self, scene: &Scene, seen: Option<&SeenSurfaces>) -> Result<Parts> {
-        self.has_light = seen.is_none() || scene.source_count() > 0 || scene.has_particles();
+        let has_light = scene.source_count() > 0 || scene.has_particles() || scene.has_points();
+        self.has_light = seen.is_none() || has_light;
         let mut parts = Parts {
             surfaces: seen.map(|seen| Arc::clone(&seen.light)),
             lights: Vec::new(),

@@ -58,7 +58,7 @@ impl Renderer {
             bloom,
         } = wanted;
         let seen = self.see_all_surfaces(scene)?;
-        self.has_light = scene.source_count() > 0 || scene.has_particles();
+        self.has_light = scene.source_count() > 0 || scene.has_particles() || scene.has_points();
         if self.has_light {
             let light = Rows {
                 rows: rows.clone(),

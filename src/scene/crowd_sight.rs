@@ -184,10 +184,8 @@ impl Scene {
         let integration = &self.integration;
         let is_exact = matches!(integration.method, Method::Exact { tolerance, .. } if tolerance >= LEAST_TOLERANCE);
         let is_plain = integration.softening == 0.0 && integration.reduction == Reduction::Sum;
-        let is_open = self.depth.is_none() && self.meshes.is_empty() && self.metaballs.is_empty();
-        let no_colliders = !self.colliders.iter().any(|it| it.visible);
-        let may = integration.crowd == Crowd::Auto && is_exact && is_plain && is_open;
-        may && no_colliders && self.fading().is_none() && CrowdSight::new(self).is_ok()
+        let may = integration.crowd == Crowd::Auto && is_exact && is_plain;
+        may && self.fading().is_none() && CrowdSight::new(self).is_ok()
     }
 
     /// Returns the scene with those of its points as sources of their own that are not part of a crowd: all, unless

@@ -6,40 +6,43 @@ use energywave::scene::{Antialias, Camera, Decay, Measure, Method, PointList, Po
 use fastrand::Rng;
 use glam::DVec3;
 
-use super::crowds::{PROFILES, integral};
+use super::crowds::{PROFILES, integral_up_to};
 use crate::common;
 
 /// No multiple of a tile.
-const SIZE: ImageSize = ImageSize {
+pub const SIZE: ImageSize = ImageSize {
     width: 190,
     height: 107,
 };
 
 /// One in which many cells of 8 pixels have a point.
-const LARGE: ImageSize = ImageSize {
+pub const LARGE: ImageSize = ImageSize {
     width: 950,
     height: 531,
 };
 
 /// So many points fill that.
-const FILLING: usize = 20_000;
+pub const FILLING: usize = 20_000;
 
 /// Wide pixels, and so many points that next ones have a form of their own.
 const MEDIUM: ImageSize = ImageSize {
     width: 640,
     height: 357,
 };
-const MANY: usize = 51_000;
+pub const MANY: usize = 51_000;
 
 /// So many pixels anywhere are looked at, and so many that hold a point, of crowds of a thousand.
-const PIXELS: usize = 1500;
+pub const PIXELS: usize = 1500;
 
 /// Of larger crowds, fewer: truth is a sum over all points.
-const FEWER_PIXELS: usize = 500;
+pub const FEWER_PIXELS: usize = 500;
+
+/// Of a hundred thousand and more, so many that all their sums have this many terms.
+const FEWEST_TERMS: usize = 30_000_000;
 
 /// How points lie and shine.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Shape {
+pub enum Shape {
     Ball,
     /// Half of them in 20 clumps smaller than a pixel.
     Clumps,
@@ -118,7 +121,7 @@ fn cloud(shape: Shape, count: usize, profile: Profile) -> Points {
     points
 }
 
-fn scene(shape: Shape, count: usize, profile: Profile, tolerance: f64) -> Scene {
+pub fn scene(shape: Shape, count: usize, profile: Profile, tolerance: f64) -> Scene {
     let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO));
     scene.camera.near = match shape {
         Shape::Inside => 0.05,
@@ -168,15 +171,18 @@ fn pixels(scene: &Scene, many: usize) -> [Vec<usize>; 2] {
 }
 
 /// Returns what the light of a pixel is, and of how much light that is the sum.
-fn truth(scene: &Scene, pixel: usize) -> (DVec3, DVec3) {
+pub fn truth(scene: &Scene, pixel: usize) -> (DVec3, DVec3) {
     let plane = scene.view_plane();
     let width = scene.image.width;
     let ray = plane.ray(pixel as u32 % width, pixel as u32 / width);
+    let end = scene.depth.as_ref().map_or(1.0, |depth| {
+        plane.end(&ray, depth.as_slice()[pixel], depth.along())
+    });
     let points = &scene.points[0];
     let (mut light, mut all) = (DVec3::ZERO, DVec3::ZERO);
     let lights = points.points.lights().unwrap();
     for (point, own) in points.points.positions().iter().zip(lights) {
-        let it = integral(&ray, *point, points.profile, scene.decay);
+        let it = integral_up_to(&ray, end, *point, points.profile, scene.decay);
         let own = it * DVec3::from(own.map(f64::from));
         light += own;
         all += own.abs();
@@ -185,7 +191,13 @@ fn truth(scene: &Scene, pixel: usize) -> (DVec3, DVec3) {
 }
 
 /// Says what is wrong with a picture, if anything is, and prints its errors.
-fn fault(scene: &Scene, image: &[f32], tolerance: f64, many: usize, name: &str) -> Option<String> {
+pub fn fault(
+    scene: &Scene,
+    image: &[f32],
+    tolerance: f64,
+    many: usize,
+    name: &str,
+) -> Option<String> {
     let mut said = Vec::new();
     for (where_, pixels) in ["anywhere", "with a point"].iter().zip(pixels(scene, many)) {
         if pixels.is_empty() {
@@ -196,7 +208,7 @@ fn fault(scene: &Scene, image: &[f32], tolerance: f64, many: usize, name: &str) 
             let error = |pixel: &usize| {
                 let (light, all) = truth(scene, *pixel);
                 let found = &image[4 * pixel..];
-                let off = |k: usize| (f64::from(found[k]) - light[k]).abs() / all[k];
+                let off = |k: usize| (f64::from(found[k]) - light[k]).abs() / all[k].max(1e-300);
                 off(0).max(off(1)).max(off(2))
             };
             pixels.iter().map(error).collect()
@@ -230,7 +242,11 @@ fn faults(cases: &[(Shape, usize, f64)]) -> Vec<String> {
         for profile in PROFILES {
             let scene = scene(*shape, *count, profile, *tolerance);
             let image = renderer.render(&scene).unwrap();
-            let many = if *count > 3000 { FEWER_PIXELS } else { PIXELS };
+            let many = match count {
+                ..=3000 => PIXELS,
+                ..=60_000 => FEWER_PIXELS,
+                _ => FEWEST_TERMS / count,
+            };
             let name = format!("{shape:?} of {count}, {profile:?}, {tolerance:e}");
             faults.extend(fault(&scene, image.as_slice(), *tolerance, many, &name));
         }
@@ -269,6 +285,17 @@ fn crowds_of_one_of_two_and_of_many_are_within_a_thousandth() {
         (Shape::HeavyTails, 30_000, 1e-3),
         (Shape::Inside, 30_000, 1e-3),
         (Shape::AtPlane, 30_000, 1e-3),
+    ];
+    assert_eq!(faults(&cases), Vec::<String>::new());
+}
+
+#[test]
+fn a_hundred_thousand_and_a_million_points_are_within_a_thousandth() {
+    let cases = [
+        (Shape::Ball, 100_000, 1e-3),
+        (Shape::Clumps, 100_000, 1e-3),
+        (Shape::HeavyTails, 100_000, 1e-3),
+        (Shape::Ball, 1_000_000, 1e-3),
     ];
     assert_eq!(faults(&cases), Vec::<String>::new());
 }

@@ -55,6 +55,17 @@ fn scene(from: f64, fov_y: f64, points: Points) -> Scene {
 
 /// Returns the integral of zeta / d or zeta / d^2 along a ray, over s.
 pub fn integral(ray: &Ray, point: DVec3, profile: Profile, decay: Option<Decay>) -> f64 {
+    integral_up_to(ray, 1.0, point, profile, decay)
+}
+
+/// Returns the same up to an s.
+pub fn integral_up_to(
+    ray: &Ray,
+    end: f64,
+    point: DVec3,
+    profile: Profile,
+    decay: Option<Decay>,
+) -> f64 {
     let from = ray.origin - point;
     let (a2, b2) = (ray.span.length_squared(), from.dot(ray.span));
     let beside2 = (from - ray.span * (b2 / a2))
@@ -65,8 +76,8 @@ pub fn integral(ray: &Ray, point: DVec3, profile: Profile, decay: Option<Decay>)
         let (l, d) = (a2.sqrt(), beside2.sqrt());
         let at = |s: f64| (s + foot) * l / d;
         return match profile {
-            Profile::Inverse => (at(1.0).asinh() - at(0.0).asinh()) / l,
-            _ => (at(1.0).atan() - at(0.0).atan()) / (d * l),
+            Profile::Inverse => (at(end).asinh() - at(0.0).asinh()) / l,
+            _ => (at(end).atan() - at(0.0).atan()) / (d * l),
         };
     };
     // X(v) = a v^2 + 2 b v + A with v = -1 / (s + beta).
@@ -84,7 +95,7 @@ pub fn integral(ray: &Ray, point: DVec3, profile: Profile, decay: Option<Decay>)
             }
         }
     };
-    let difference = alpha * (primitive(1.0) - primitive(0.0));
+    let difference = alpha * (primitive(end) - primitive(0.0));
     match profile {
         Profile::Inverse => -difference,
         _ => difference,

@@ -17,6 +17,7 @@ mod cast_shadows; // holds what meshes leave of it to the reference
 mod clip_depths; // holds depths of clip space to the surfaces that a rasteriser met
 mod convolution;
 mod convolved_paths; // holds light that adds up over a core to its definition
+mod crowd_depths;
 mod crowd_truth; // crowds of every shape and number are what float64 sums up
 mod crowds; // holds crowds of points to the sum over all of them
 mod defaults; // looks at a scene that names nothing

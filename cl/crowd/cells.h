@@ -1,0 +1,159 @@
+// What the cells around a tile give its nodes: by their own nodes, by limits that hold beside small cells, or of each
+// source by itself where those are fewer.
+#pragma once
+#include "../film.h"
+#include "build.h"
+#include "ends.h"
+
+#define NODES 16u
+#define BATCHES (NODES / LANES)
+
+// A closed form takes as long as so many limits.
+#define LIMITS_FOR_A_POINT 8u
+
+// Rays through the nodes of a tile, where they end, and their light up to each end.
+typedef struct {
+    Rays rays[BATCHES];
+    uint end_count;
+    End ends[MOST_ENDS];
+    float3v light[MOST_ENDS * BATCHES];
+} NodesOfTile;
+
+#ifdef WITH_ENDS
+#define ENDS_OF(tile) (tile)->end_count
+#else
+#define ENDS_OF(tile) 1u
+#endif
+
+// What all cells have.
+typedef struct {
+    __global const uint *starts, *codes;
+    __global const CrowdSource *sources;
+    __global const float4 *peaks, *levels, *nodes, *limits;
+    __global const float *numbers;
+} Cells;
+
+bool is_empty_cell(const Cells *const cells, const uint level, const uint code) {
+    return cells->starts[code << (2u * level)] == cells->starts[(code + 1u) << (2u * level)];
+}
+
+INLINE void add_light(float3v *const light, const floatv core, const float4 source) {
+    light->x = fma(core, splat(source.x), light->x);
+    light->y = fma(core, splat(source.y), light->y);
+    light->z = fma(core, splat(source.z), light->z);
+}
+
+// Adds the light of a point along a batch of rays, up to each end.
+INLINE void add_point(const CrowdView *const view, const Rays *const rays, const Passing passing, const float4 source,
+                      const uint batch, NodesOfTile *const tile) {
+    for (uint end = 0u; end < ENDS_OF(tile); ++end) {
+        const floatv light = light_beside(view, &tile->ends[end], rays->begin - passing.along, passing.least);
+        add_light(&tile->light[end * BATCHES + batch], light, source);
+    }
+}
+
+// Adds the light of the sources of a cell, of each by itself.
+INLINE void add_sources(const CrowdView *const view, const Cells *const cells, const uint first, const uint end,
+                        const float angle, NodesOfTile *const tile) {
+    const float soft4 = angle * angle * angle * angle;
+    for (uint index = first; index < end; ++index) {
+        __global const CrowdSource *const source = cells->sources + index;
+        const uint code = cells->codes[index];
+        const float u = slope_u(view, (float)(8u * every_other(code) + 4u) + source->x);
+        const float v = slope_v(view, (float)(8u * every_other(code >> 1) + 4u) + source->y);
+        const float z = exp(source->t), far2 = z * z * fma(u, u, fma(v, v, 1.0f));
+        const float4 light = (float4)(source->red, source->green, source->blue, 0.0f);
+        for (uint batch = 0u; batch < BATCHES; ++batch) {
+            const Rays *const rays = &tile->rays[batch];
+            const floatv beside2 = cross2(rays->u - u, rays->v - v, u, v);
+            add_point(view, rays, passing(rays, u, v, z, beside2, soft4 * far2 * far2), light, batch, tile);
+        }
+    }
+}
+
+// Adds the limits of a cell, which are those of whole rays.
+INLINE void add_limits(const CrowdView *const view, const Cells *const cells, const uint at, const float half_side,
+                       const float middle_u, const float middle_v, const float angle, NodesOfTile *const tile) {
+    const uint n = view->nodes;
+    const float soft4 = angle * angle * angle * angle;
+    for (uint j = 0u; j < n; ++j) {
+        const float v = fma(half_side * view->step_v, cells->numbers[CELL_NODES + j], middle_v);
+        for (uint i = 0u; i < n; ++i) {
+            const float u = fma(half_side * view->step_u, cells->numbers[CELL_NODES + i], middle_u);
+            const float per_length2 = 1.0f / fma(u, u, fma(v, v, 1.0f));
+            for (uint batch = 0u; batch < BATCHES; ++batch) {
+                const Rays *const rays = &tile->rays[batch];
+                const floatv beside2 = cross2(rays->u - u, rays->v - v, u, v);
+                floatv sine2 = beside2 * rays->per_stretch * rays->per_stretch * per_length2;
+                if (angle > 0.0f)
+                    sine2 = root(fma(sine2, sine2, splat(soft4)));
+                add_light(&tile->light[batch], core_of(view, sine2), cells->limits[at * n * n + j * n + i]);
+            }
+        }
+    }
+    for (uint batch = 0u; batch < BATCHES; ++batch)
+        add_light(&tile->light[batch], splat(1.0f), cells->levels[at]);
+}
+
+// Adds the light of a cell at the nodes of a tile, softened by an angle: by its limits, where rays are whole and the
+// cell is so small that it needs no depths, else by its nodes, or by its sources where they are fewer.
+INLINE void add_cell(const CrowdView *const view, const Cells *const cells, const uint level, const uint code,
+                     const float angle, const bool is_whole, NodesOfTile *const tile) {
+    const uint n = view->nodes, depths = view->depths;
+    const float half_side = (float)(4u << level);
+    const float column = (2.0f * (float)every_other(code) + 1.0f) * half_side;
+    const float row = (2.0f * (float)every_other(code >> 1) + 1.0f) * half_side;
+    const float middle_u = slope_u(view, column), middle_v = slope_v(view, row);
+    const uint first = cells->starts[code << (2u * level)], end = cells->starts[(code + 1u) << (2u * level)];
+    const bool has_limits = is_whole && level < view->shallow;
+    const uint fewest = has_limits ? n * n / LIMITS_FOR_A_POINT : level >= view->base ? n * n * depths : UINT_MAX;
+    if (end - first <= fewest) {
+        add_sources(view, cells, first, end, angle, tile);
+        return;
+    }
+    const uint at = cells_below(view, level) + code;
+    if (has_limits) {
+        add_limits(view, cells, at, half_side, middle_u, middle_v, angle, tile);
+        return;
+    }
+    const float soft4 = angle * angle * angle * angle;
+    const uint from = (at - cells_below(view, view->base)) * n * n * depths;
+    for (uint j = 0u; j < n; ++j) {
+        const float v = fma(half_side * view->step_v, cells->numbers[CELL_NODES + j], middle_v);
+        for (uint i = 0u; i < n; ++i) {
+            const float u = fma(half_side * view->step_u, cells->numbers[CELL_NODES + i], middle_u);
+            const float length2 = fma(u, u, fma(v, v, 1.0f));
+            for (uint batch = 0u; batch < BATCHES; ++batch) {
+                const Rays *const rays = &tile->rays[batch];
+                const floatv beside2 = cross2(rays->u - u, rays->v - v, u, v);
+                for (uint q = 0u; q < depths; ++q) {
+#ifdef ONE_DEPTH
+                    const float z = cells->numbers[DEPTHS_THEMSELVES]; // spoiled
+#else
+                    const float z = cells->numbers[DEPTHS_THEMSELVES + q];
+#endif
+                    const float far2 = z * z * length2;
+                    const Passing it = passing(rays, u, v, z, beside2, soft4 * far2 * far2);
+                    add_point(view, rays, it, cells->nodes[from + (q * n + j) * n + i], batch, tile);
+                }
+            }
+        }
+    }
+}
+
+// Adds the light of sources beside the grid, or near the eye, at the nodes of a tile.
+INLINE void add_rest(const CrowdView *const view, __global const float *const restrict rest, NodesOfTile *const tile) {
+    for (uint index = 0u; index < view->rest; ++index) {
+        const float x = rest[6u * index], y = rest[6u * index + 1u], z = rest[6u * index + 2u];
+        const float4 light = (float4)(rest[6u * index + 3u], rest[6u * index + 4u], rest[6u * index + 5u], 0.0f);
+        for (uint batch = 0u; batch < BATCHES; ++batch) {
+            const Rays *const rays = &tile->rays[batch];
+            const floatv a = fma(splat(-z), rays->v, splat(y)), b = fma(splat(z), rays->u, splat(-x)),
+                         c = fma(splat(x), rays->v, -y * rays->u);
+            const floatv least = fma(a, a, fma(b, b, c * c)) * rays->per_stretch * rays->per_stretch;
+            const floatv along = fma(splat(x), rays->u, fma(splat(y), rays->v, splat(z))) * rays->per_stretch;
+            const Passing it = {least, along};
+            add_point(view, rays, it, light, batch, tile);
+        }
+    }
+}
