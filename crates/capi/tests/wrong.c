@@ -86,7 +86,8 @@ static void overrides(energywave_scene *scene) {
     fails(energywave_scene_override(scene, &given), ARGUMENT, "\"guess\" is none; use exact, simpson, jittered");
     given.method = "simpson";
     given.sampling = "tiles";
-    fails(energywave_scene_override(scene, &given), ARGUMENT, "every pixel");
+    fails(energywave_scene_override(scene, &given), SCENE, "\"simpson\" takes every pixel");
+    holds(strcmp(last_error().key, "integration.sampling") == 0, "the key of tiles");
     given.sampling = NULL;
     given.divisions = 3;
     fails(energywave_scene_override(scene, &given), SCENE, "divisions");

@@ -64,7 +64,7 @@ fn display_of(
 ) -> PyResult<Display> {
     match scene {
         Some(scene) => Ok(scene.frame(py, overrides)?.display.clone()),
-        None => Ok(overrides.display()),
+        None => overrides.display(py),
     }
 }
 

@@ -200,7 +200,7 @@ impl Renderer {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let read = Overrides::of(overrides)?;
-        let open = scene.open_at(read.time(), rate);
+        let open = scene.open_at(read.time, rate);
         if open.is_empty() {
             return self.render(py, scene, overrides, progress);
         }
