@@ -46,6 +46,10 @@ impl Overrides {
                 return Err(bad_argument("overrides.width", &reason));
             }
         };
+        if self.reserved != 0 {
+            let reason = format!("{}; it must be 0", self.reserved);
+            return Err(bad_argument("overrides.reserved", &reason));
+        }
         // SAFETY: the caller's promise, three times.
         let (method, sampling, antialias) = unsafe {
             (

@@ -98,7 +98,7 @@ pub unsafe extern "C" fn energywave_scene_from_file(
 ) -> Status {
     guarded(|| {
         // SAFETY: the caller's promise, twice.
-        let (path, scene) = unsafe { (border::path(path, "path")?, border::out(scene, "scene")?) };
+        let (path, scene) = unsafe { (border::file(path, "path")?, border::out(scene, "scene")?) };
         give(AnimatedScene::from_file(path)?, scene)
     })
 }
