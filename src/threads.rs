@@ -40,7 +40,7 @@ pub(crate) fn greatest<T: Sync>(values: &[T], size: impl Fn(&T) -> f64 + Send + 
     return values.iter().map(size).fold(0.0, f64::max);
 }
 
-/// Calls `work` with the place of the first value of each chunk of `len` values, and the chunk; the last may be shorter.
+/// Calls `work` with the place of the first value of each chunk of `len` values, and the chunk; the last may be short.
 pub(crate) fn for_each_part<T: Send>(
     values: &mut [T],
     len: usize,

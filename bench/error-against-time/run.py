@@ -63,7 +63,7 @@ def table(rows: list[dict]) -> str:
 
 
 def joined(result: dict, others: list[dict]) -> dict:
-    """Adds what other runs found, of what several have the quickest; the machine says where a runner's rows are from."""
+    """Adds what other runs found, of what several have the quickest; the machine says which are from where."""
     best = {(row["scene"], row["runner"], str(row["setting"])): row for row in result["rows"]}
     added = {}
     for other in others:

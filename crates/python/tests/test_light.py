@@ -46,7 +46,8 @@ def test_an_array_that_is_there_gets_the_same_light(scene, renderer):
     array = np.full((48, 64, 4), np.nan, np.float32)
     renderer.render_into(scene, array)
     assert np.array_equal(array, renderer.render(scene))
-    for wrong in [array[:, :32], np.empty((48, 64, 4)), np.empty((64, 48, 4), np.float32), array[::-1], np.asfortranarray(array), [1.0]]:
+    shaped = [array[:, :32], np.empty((48, 64, 4)), np.empty((64, 48, 4), np.float32)]
+    for wrong in [*shaped, array[::-1], np.asfortranarray(array), [1.0]]:
         with pytest.raises(ew.UnsupportedError) as raised:
             renderer.render_into(scene, wrong)
         assert raised.value.place == "array"

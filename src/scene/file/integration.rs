@@ -1,5 +1,9 @@
 //! `[integration]` of a scene file.
 
+mod overrides;
+
+pub use overrides::Overrides;
+
 use serde::{Deserialize, Serialize};
 
 use crate::scene::integration::{

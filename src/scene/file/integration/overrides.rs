@@ -1,10 +1,10 @@
 //! What takes the place of values of a scene that was read: options of the program, keywords of Python, a struct of C.
 //! One rule for all: naming divisions asks for a sum of so many, naming a tolerance or a sampling for the integral.
 
-use super::integration::{MethodKeys, MethodName, check_sampling};
+use super::{MethodKeys, MethodName, check_sampling};
+use crate::error::{Result, SceneError};
 use crate::image::Exposure;
 use crate::scene::{Antialias, Method, Sampling, Scene};
-use crate::{Result, SceneError};
 
 /// Values that take the place of a scene's own; `None` leaves what it has. [`Overrides::apply`] is what
 /// [`Scene::from_file_with`](crate::scene::Scene::from_file_with) and
