@@ -18,6 +18,43 @@ pub(crate) fn for_each_chunk<T: Send>(
         .for_each(|(index, chunk)| work(index, chunk));
 }
 
+/// So many values a thread takes at once from [`map`] and [`greatest`], whose work is small.
+#[cfg(feature = "threads")]
+const PART: usize = 4096;
+
+/// Returns what `make` makes of each value.
+pub(crate) fn map<T: Sync, U: Send>(values: &[T], make: impl Fn(&T) -> U + Send + Sync) -> Vec<U> {
+    #[cfg(feature = "threads")]
+    return values.par_iter().with_min_len(PART).map(make).collect();
+    #[cfg(not(feature = "threads"))]
+    return values.iter().map(make).collect();
+}
+
+/// Returns the greatest size of a value, 0 where there is none.
+pub(crate) fn greatest<T: Sync>(values: &[T], size: impl Fn(&T) -> f64 + Send + Sync) -> f64 {
+    #[cfg(feature = "threads")]
+    let sizes = values.par_iter().with_min_len(PART).map(size);
+    #[cfg(feature = "threads")]
+    return sizes.reduce(|| 0.0, f64::max);
+    #[cfg(not(feature = "threads"))]
+    return values.iter().map(size).fold(0.0, f64::max);
+}
+
+/// Calls `work` with the place of the first value of each chunk of `len` values, and the chunk; the last may be short.
+pub(crate) fn for_each_part<T: Send>(
+    values: &mut [T],
+    len: usize,
+    work: impl Fn(usize, &mut [T]) + Send + Sync,
+) {
+    #[cfg(feature = "threads")]
+    let parts = values.par_chunks_mut(len);
+    #[cfg(not(feature = "threads"))]
+    let parts = values.chunks_mut(len);
+    parts
+        .enumerate()
+        .for_each(|(index, part)| work(index * len, part));
+}
+
 /// Finds a number for which `work` finds something; any if there are several.
 pub(crate) fn find_any<T: Send>(
     numbers: &[usize],

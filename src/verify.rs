@@ -147,7 +147,7 @@ impl RayRecord {
     fn known(self) -> std::result::Result<KnownRay, String> {
         let ray = Ray::between(self.start, self.end);
         if let Some(fault) = ray.fault() {
-            return Err(fault.to_owned());
+            return Err(fault);
         }
         let (kind, scene) = match (&self.scene, &self.kind) {
             (Some(scene), _) => ("scene".to_owned(), Some(whole_scene(scene.clone())?)),

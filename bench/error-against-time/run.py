@@ -1,6 +1,7 @@
 """Draws every scene by every runner at every setting, and says how wrong the light is and how long a frame takes.
 
 run.py [--out results.json] [--plot FOLDER] [--record FOLDER] [--runners NAME,..] [--scenes NAME,..] [--seconds 1.0]
+       [--add results.json ..]
 """
 
 import argparse
@@ -20,7 +21,7 @@ def load(wanted: list[str] | None) -> list:
     """Makes the runners of runners/, and says which are missing."""
     runners = []
     for path in sorted((HERE / "runners").glob("[!_]*.py")):
-        if wanted and path.stem not in wanted:
+        if wanted is not None and path.stem not in wanted:
             continue
         try:
             runners.append(importlib.import_module(f"runners.{path.stem}").Runner())
@@ -61,6 +62,21 @@ def table(rows: list[dict]) -> str:
     return "\n".join(lines)
 
 
+def joined(result: dict, others: list[dict]) -> dict:
+    """Adds what other runs found, of what several have the quickest; the machine says which are from where."""
+    best = {(row["scene"], row["runner"], str(row["setting"])): row for row in result["rows"]}
+    added = {}
+    for other in others:
+        for row in other["rows"]:
+            key = row["scene"], row["runner"], str(row["setting"])
+            if key not in best or row["best_s"] < best[key]["best_s"]:
+                best[key] = row
+                added.setdefault(row["runner"], set()).add(round(other["machine"]["load_before"], 1))
+    machine = result["machine"] | {"added": {name: sorted(loads) for name, loads in added.items()}}
+    scenes = list(dict.fromkeys(key[0] for key in best))
+    return {"machine": machine, "rows": sorted(best.values(), key=lambda row: scenes.index(row["scene"]))}
+
+
 def record(result: dict, folder: Path) -> None:
     """Writes what a run gave into a folder: results.json, plot.svg, and a README.md with the table."""
     from plot import draw_overview
@@ -72,6 +88,9 @@ def record(result: dict, folder: Path) -> None:
     draw_overview(rows, folder / "plot.svg")
     load = machine["load_before"]
     busy = "**Loaded:** other work ran, and times are too long. " if load > 0.5 else ""
+    for name, loads in machine.get("added", {}).items():
+        loads = ", ".join(str(load) for load in loads)
+        busy += f"Rows of {name} are the best of runs that were added, at a load of {loads}. "
     (folder / "README.md").write_text(
         f"# Error against time, {machine['date']}\n\n"
         f"{busy}Load before the run {load:.1f}, {machine['cpus']} cores, {machine['system']}; "
@@ -88,10 +107,11 @@ def main() -> None:
     parser.add_argument("--runners", help="names of files in runners/, with commas between")
     parser.add_argument("--scenes", help="names of files in scenes/, with commas between")
     parser.add_argument("--seconds", type=float, default=1.0, help="how long each setting is drawn")
+    parser.add_argument("--add", type=Path, nargs="+", default=[], help="results of other runs on this machine")
     arguments = parser.parse_args()
     machine = {"cpus": os.cpu_count(), "load_before": os.getloadavg()[0], "system": f"{platform.system()} {platform.machine()}"}
     machine |= {"date": time.strftime("%Y-%m-%d"), "seconds": arguments.seconds}
-    runners = load(arguments.runners.split(",") if arguments.runners else None)
+    runners = load(None if arguments.runners is None else arguments.runners.split(","))
     rows = []
     for name in arguments.scenes.split(",") if arguments.scenes else names():
         scene = Scene.open(name)
@@ -105,6 +125,9 @@ def main() -> None:
                 rows.append(row)
                 print(f"{name}: {runner.name} {setting}: {1e3 * times['best_s']:.3g} ms, {row['p99']:.1e}", flush=True)
     result = {"machine": machine, "rows": rows}
+    if arguments.add:
+        result = joined(result, [json.loads(file.read_text()) for file in arguments.add])
+        rows = result["rows"]
     arguments.out.write_text(json.dumps(result, indent=1) + "\n")
     print(table(rows))
     if arguments.plot:

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use energywave::Error;
 use energywave::image::{DepthAlong, DepthImage, DepthOptions, ImageSize};
-use energywave::scene::{Antialias, Method, MethodKeys, Sampling, Scene};
+use energywave::scene::{self, Antialias, MethodKeys, Sampling, Scene};
 
 use super::args::{divisions, scale, size, tolerance};
 
@@ -112,6 +112,15 @@ pub enum SamplingName {
     Tiles,
 }
 
+impl From<SamplingName> for Sampling {
+    fn from(name: SamplingName) -> Self {
+        match name {
+            SamplingName::Pixels => Self::Pixels,
+            SamplingName::Tiles => Self::Tiles,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
     /// Composite Simpson rule with equal divisions, as in the paper of 2015
@@ -120,6 +129,16 @@ pub enum MethodName {
     Jittered,
     /// The integral itself
     Exact,
+}
+
+impl From<MethodName> for scene::MethodName {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Simpson => Self::Simpson,
+            MethodName::Jittered => Self::Jittered,
+            MethodName::Exact => Self::Exact,
+        }
+    }
 }
 
 impl Overrides {
@@ -157,49 +176,18 @@ impl Overrides {
                 None => self.open_depth(file, scene)?,
             });
         }
-        scene.integration.method = self.method(scene.integration.method, keys)?;
-        if let Some(name) = self.antialias {
-            scene.integration.antialias = name.into();
-        }
-        Ok(())
-    }
-
-    fn method(&self, of_scene: Method, keys: &MethodKeys) -> Result<Method, Error> {
-        let asks_sum = self.divisions.is_some();
-        let asks_exact = self.tolerance.is_some() || self.sampling.is_some();
-        let of_scene = match of_scene {
-            Method::Simpson { .. } => MethodName::Simpson,
-            Method::Jittered { .. } => MethodName::Jittered,
-            _ => MethodName::Exact,
+        let values = scene::Overrides {
+            method: self.method.map(Into::into),
+            divisions: self.divisions,
+            tolerance: self.tolerance,
+            sampling: self.sampling.map(Into::into),
+            antialias: self.antialias.map(Into::into),
+            ..scene::Overrides::default()
         };
-        let name = match self.method {
-            Some(name) => name,
-            // Naming divisions asks for a sum of so many; naming a tolerance asks for it to be met.
-            None if asks_sum == asks_exact => of_scene,
-            None if asks_exact => MethodName::Exact,
-            None if of_scene == MethodName::Exact => MethodName::Simpson,
-            None => of_scene,
-        };
-        if name != MethodName::Exact && self.sampling == Some(SamplingName::Tiles) {
-            let message = "--sampling tiles is for --method exact; the others take every pixel";
-            return Err(Error::Unsupported(message.to_owned()));
-        }
-        let divisions = self.divisions.unwrap_or(keys.divisions);
-        let sampling = match self.sampling {
-            Some(SamplingName::Pixels) => Sampling::Pixels,
-            Some(SamplingName::Tiles) => Sampling::Tiles,
-            None => keys.sampling,
-        };
-        Ok(match name {
-            MethodName::Simpson => Method::Simpson { divisions },
-            MethodName::Jittered => Method::Jittered {
-                divisions,
-                seed: keys.seed,
-            },
-            MethodName::Exact => Method::Exact {
-                tolerance: self.tolerance.unwrap_or(keys.tolerance),
-                sampling,
-            },
+        // What was typed is at odds with itself, whatever the scene is.
+        values.apply(scene, keys).map_err(|error| match error {
+            Error::Scene(fault) => Error::Unsupported(format!("--sampling: {}", fault.message)),
+            other => other,
         })
     }
 

@@ -173,7 +173,8 @@ impl Devices {
             "reference" => self.of_type(DeviceType::Reference),
             "gpu" => self.of_type(DeviceType::Gpu).into_iter().take(1).collect(),
             "cpu" => self.of_type(DeviceType::Cpu).into_iter().take(1).collect(),
-            "" => Vec::new(),
+            // No name is found by a comma or a blank alone.
+            word if !word.contains(char::is_alphanumeric) => Vec::new(),
             word => match word.parse::<usize>() {
                 Ok(index) => self.list.get(index).into_iter().collect(),
                 Err(_) => self.by_name(word),

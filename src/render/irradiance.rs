@@ -6,7 +6,7 @@ use super::one::DeviceRenderer;
 use super::{Renderer, RendererBackend};
 use crate::error::{Error, Result, SceneError};
 use crate::reference;
-use crate::scene::{Ray, Scene};
+use crate::scene::{Scene, point_fault};
 
 impl DeviceRenderer {
     /// Returns what [`Meshes::irradiance`](crate::mesh::Meshes) says.
@@ -52,16 +52,15 @@ impl Renderer {
         }
         let mut directions = Vec::with_capacity(normals.len());
         for (index, (point, normal)) in points.iter().zip(normals).enumerate() {
-            let fault = Ray {
-                origin: *point,
-                span: DVec3::X,
-            }
-            .fault();
-            if let Some(fault) = fault {
+            if let Some(fault) = point_fault(*point) {
                 return Err(SceneError::value(format!("point {index}"), fault).into());
             }
+            if !normal.is_finite() {
+                let message = format!("{normal} is not finite");
+                return Err(SceneError::value(format!("normal {index}"), message).into());
+            }
             let Some(direction) = normal.try_normalize() else {
-                let message = "has no direction: it is zero, or not finite";
+                let message = "has no direction: it is zero";
                 return Err(SceneError::value(format!("normal {index}"), message).into());
             };
             directions.push(direction);

@@ -16,6 +16,9 @@ type Progress<'a> = dyn FnMut(f32) -> ControlFlow<()> + 'a;
 /// So many rays a device gets at once: memory for them is used again, and stays in the caches.
 const AT_ONCE: usize = 1 << 16;
 
+/// So many rays a thread takes to give them their light.
+const PART: usize = 4096;
+
 /// So many rays of the reference are integrated before it is asked whether to go on: some tenths of a second.
 const BAND: usize = 4096;
 
@@ -117,22 +120,36 @@ impl Renderer {
             Method::Exact { .. } if !has_closed_forms => Some(ray_order::alike(rays)),
             _ => None,
         };
-        let ordered: Option<Vec<Ray>> = order
-            .as_ref()
-            .map(|order| order.iter().map(|place| rays[*place as usize]).collect());
+        let in_order = |order: &Vec<u32>| threads::map(order, |place| rays[*place as usize]);
+        let ordered = order.as_ref().map(in_order);
         let given = ordered.as_deref().unwrap_or(rays);
         let pixels = match &mut self.backend {
             RendererBackend::OpenCl(renderer) => renderer.integrate(scene, given, progress)?,
             RendererBackend::Several(renderer) => renderer.integrate(scene, given, progress)?,
             RendererBackend::Reference { .. } => Vec::new(), // draws by itself
         };
-        for (index, ([red, green, blue, _], ray)) in pixels.into_iter().zip(given).enumerate() {
-            let place = order.as_ref().map_or(index, |order| order[index] as usize);
-            let measure = scene.integration.scale(ray.span.length());
-            lights[place] = [red, green, blue].map(|light| measure * f64::from(light));
-        }
+        let places = order.map(|order| inverse(&order));
+        threads::for_each_part(lights, PART, |first, lights| {
+            for (index, light) in (first..).zip(lights) {
+                let place = places
+                    .as_ref()
+                    .map_or(index, |places| places[index] as usize);
+                let [red, green, blue, _] = pixels[place];
+                let measure = scene.integration.scale(rays[index].span.length());
+                *light = [red, green, blue].map(|light| measure * f64::from(light));
+            }
+        });
         Ok(())
     }
+}
+
+/// Returns where each place went.
+fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut places = vec![0; order.len()];
+    for (index, place) in (0..).zip(order) {
+        places[*place as usize] = index;
+    }
+    places
 }
 
 /// Integrates by the reference, on all cores.

@@ -70,7 +70,7 @@ pub(crate) use depth_layers::DepthLayers;
 pub use depth_report::DepthReport;
 pub(crate) use emitter::{Emitter, EmitterCore};
 #[cfg(feature = "files")]
-pub use file::{AnimatedScene, MethodKeys, SceneSpan};
+pub use file::{AnimatedScene, MethodKeys, MethodName, Overrides, SceneSpan};
 pub use group::{Group, Repeat, Rotation};
 pub use integration::{
     Absorption, Antialias, CORE_FLOOR, Decay, Integration, Measure, Method, Reduction, Sampling,
@@ -88,6 +88,7 @@ pub use particles::Particles;
 pub use points::{Lattice, PointList, PointSize};
 #[cfg(feature = "files")]
 pub use preset::Preset;
+pub(crate) use ray::point_fault;
 pub use ray::{Ray, ViewPlane};
 pub(crate) use seen::SeenSurfaces;
 pub(crate) use simulation::LAST_FRAME;

@@ -5,6 +5,23 @@ use glam::DVec3;
 use super::Camera;
 use crate::image::{DepthAlong, ImageSize};
 
+/// The greatest coordinate that float32 devices can integrate to, world units.
+const FARTHEST: f64 = 1e9;
+
+/// Says why a point is none that float32 devices can work with.
+pub(crate) fn point_fault(point: DVec3) -> Option<String> {
+    let mut axes = ["x", "y", "z"].into_iter().zip(point.to_array());
+    axes.find_map(|(axis, value)| {
+        if !value.is_finite() {
+            return Some(format!(
+                "{axis} is {value}; coordinates are finite numbers, to 1e9"
+            ));
+        }
+        let is_far = value.abs() > FARTHEST;
+        is_far.then(|| format!("{axis} is {value:e}; float32 devices can integrate to 1e9"))
+    })
+}
+
 /// A stretch of a view ray, from S (s = 0) to E (s = 1), world units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
@@ -24,17 +41,18 @@ impl Ray {
         }
     }
 
-    /// Says why float32 devices cannot integrate along this ray; `None`: they can.
+    /// Says why float32 devices cannot integrate along this ray, and by which coordinate; `None`: they can.
     #[must_use]
-    pub fn fault(&self) -> Option<&'static str> {
-        let is_bounded = |v: DVec3| v.to_array().iter().all(|x| x.abs() <= 1e9);
+    pub fn fault(&self) -> Option<String> {
+        let is_bounded = |v: DVec3| v.to_array().iter().all(|x| x.abs() <= FARTHEST);
         if !is_bounded(self.origin) || !is_bounded(self.span) {
-            Some("a coordinate beyond 1e9, what float32 devices can integrate")
-        } else if self.span.length() < 1e-9 {
-            Some("start and end are less than 1e-9 apart")
-        } else {
-            None
+            let ends = [("start", self.origin), ("end", self.origin + self.span)];
+            let fault_of = |(end, at)| Some(format!("{end}: {}", point_fault(at)?));
+            let longest = || "longer than float32 devices can integrate, 1e9".to_owned();
+            return Some(ends.into_iter().find_map(fault_of).unwrap_or_else(longest));
         }
+        let is_short = self.span.length() < 1e-9;
+        is_short.then(|| "start and end are less than 1e-9 apart".to_owned())
     }
 
     /// Returns the point L(s).

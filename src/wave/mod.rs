@@ -36,6 +36,7 @@ use crate::opencl::{
     Compute, FilmFormat, Handle, RawMemory, RendererOptions, UploadedShared, Watch,
 };
 use crate::scene::{Method, Ray, Reduction, Scene};
+use crate::threads;
 use counts::Counts;
 use dispatch::Launched;
 use kernels::Kernels;
@@ -194,9 +195,9 @@ impl Wave {
         rays: &[Ray],
     ) -> Result<Plan> {
         let origin = rays.first().map_or(glam::DVec3::ZERO, |ray| ray.origin);
-        let records: Vec<_> = rays.iter().map(|ray| pack::ray(ray, origin)).collect();
+        let records = threads::map(rays, |ray| pack::ray(ray, origin));
         let far = |ray: &Ray| ray.origin.distance(origin) + ray.span.length();
-        let reach = rays.iter().map(far).fold(0.0, f64::max);
+        let reach = threads::greatest(rays, far);
         let anchor = Anchor {
             origin,
             reach,

@@ -81,7 +81,20 @@ pub unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Outcome<&'a str> {
         .ok_or_else(|| bad_argument(name, "NULL; it must point to something"))
 }
 
-/// Takes the name of a file or a folder: on Unix any bytes, elsewhere UTF-8.
+/// Takes the name of a file, which is not empty: on Unix any bytes, elsewhere UTF-8.
+///
+/// # Safety
+/// As [`optional_text`].
+pub unsafe fn file(pointer: *const c_char, name: &str) -> Outcome<PathBuf> {
+    // SAFETY: the caller's promise.
+    let path = unsafe { path(pointer, name) }?;
+    match path.as_os_str().is_empty() {
+        true => Err(bad_argument(name, "it is empty; give the path of a file")),
+        false => Ok(path),
+    }
+}
+
+/// Takes the name of a file or a folder, which may be empty.
 ///
 /// # Safety
 /// As [`optional_text`].

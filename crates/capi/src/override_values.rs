@@ -2,8 +2,7 @@
 
 use std::ffi::c_char;
 
-use energywave::image::ImageSize;
-use energywave::scene::{Antialias, Method, MethodKeys, Sampling, Scene};
+use energywave::scene::{Antialias, MethodName, Overrides as Values, Sampling};
 
 use crate::border::{self, Versioned};
 use crate::status::{Outcome, bad_argument};
@@ -35,66 +34,39 @@ pub struct Overrides {
 // SAFETY: it begins with its size, and its fields are numbers and addresses.
 unsafe impl Versioned for Overrides {}
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum MethodName {
-    Exact,
-    Simpson,
-    Jittered,
-}
-
-/// The same, understood.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Values {
-    size: Option<ImageSize>,
-    method: Option<MethodName>,
-    sampling: Option<Sampling>,
-    antialias: Option<Antialias>,
-    tolerance: Option<f64>,
-    divisions: Option<u32>,
-}
-
 impl Overrides {
     /// # Safety
     /// Its texts are NULL, or end with a 0.
     pub unsafe fn read(&self) -> Outcome<Values> {
-        let size = match (self.width, self.height) {
-            (0, 0) => None,
-            (width, height) if width > 0 && height > 0 => Some(ImageSize { width, height }),
+        let (width, height) = match (self.width, self.height) {
+            (0, 0) => (None, None),
+            (width, height) if width > 0 && height > 0 => (Some(width), Some(height)),
             (width, height) => {
                 let reason = format!("{width}x{height} pixels; give both, or 0 for both");
                 return Err(bad_argument("overrides.width", &reason));
             }
         };
-        let methods = [
-            ("exact", MethodName::Exact),
-            ("simpson", MethodName::Simpson),
-            ("jittered", MethodName::Jittered),
-        ];
-        let samplings = [("tiles", Sampling::Tiles), ("pixels", Sampling::Pixels)];
-        let looks = [
-            ("footprint", Antialias::Footprint),
-            ("none", Antialias::None),
-        ];
+        if self.reserved != 0 {
+            let reason = format!("{}; it must be 0", self.reserved);
+            return Err(bad_argument("overrides.reserved", &reason));
+        }
         // SAFETY: the caller's promise, three times.
         let (method, sampling, antialias) = unsafe {
             (
-                word(self.method, "overrides.method", &methods)?,
-                word(self.sampling, "overrides.sampling", &samplings)?,
-                word(self.antialias, "overrides.antialias", &looks)?,
+                word(self.method, "overrides.method", &MethodName::WORDS)?,
+                word(self.sampling, "overrides.sampling", &Sampling::WORDS)?,
+                word(self.antialias, "overrides.antialias", &Antialias::WORDS)?,
             )
         };
-        let is_sum = matches!(method, Some(MethodName::Simpson | MethodName::Jittered));
-        if is_sum && sampling == Some(Sampling::Tiles) {
-            let reason = "tiles is for the method exact; the others take every pixel";
-            return Err(bad_argument("overrides.sampling", reason));
-        }
         Ok(Values {
-            size,
+            width,
+            height,
             method,
             sampling,
             antialias,
             tolerance: (self.tolerance != 0.0).then_some(self.tolerance),
             divisions: (self.divisions != 0).then_some(self.divisions),
+            exposure: None,
         })
     }
 }
@@ -117,45 +89,6 @@ unsafe fn word<T: Copy>(
             let given = energywave::shown(given);
             let reason = format!("\"{given}\" is none; use {}", known.join(", "));
             Err(bad_argument(name, &reason))
-        }
-    }
-}
-
-impl Values {
-    /// Puts the values into a scene; `keys` is what its text says of all methods.
-    pub fn apply(&self, scene: &mut Scene, keys: &MethodKeys) {
-        scene.image = self.size.unwrap_or(scene.image);
-        scene.integration.antialias = self.antialias.unwrap_or(scene.integration.antialias);
-        scene.integration.method = self.method(scene.integration.method, keys);
-    }
-
-    fn method(&self, of_scene: Method, keys: &MethodKeys) -> Method {
-        let asks_sum = self.divisions.is_some();
-        let asks_exact = self.tolerance.is_some() || self.sampling.is_some();
-        let of_scene = match of_scene {
-            Method::Simpson { .. } => MethodName::Simpson,
-            Method::Jittered { .. } => MethodName::Jittered,
-            _ => MethodName::Exact,
-        };
-        let name = match self.method {
-            Some(name) => name,
-            // Naming divisions asks for a sum of so many; naming a tolerance asks for it to be met.
-            None if asks_sum == asks_exact => of_scene,
-            None if asks_exact => MethodName::Exact,
-            None if of_scene == MethodName::Exact => MethodName::Simpson,
-            None => of_scene,
-        };
-        let divisions = self.divisions.unwrap_or(keys.divisions);
-        match name {
-            MethodName::Simpson => Method::Simpson { divisions },
-            MethodName::Jittered => Method::Jittered {
-                divisions,
-                seed: keys.seed,
-            },
-            MethodName::Exact => Method::Exact {
-                tolerance: self.tolerance.unwrap_or(keys.tolerance),
-                sampling: self.sampling.unwrap_or(keys.sampling),
-            },
         }
     }
 }

@@ -33,10 +33,12 @@ impl Rows {
         let row = channels * size.width as usize * size_of::<T>();
         let stride = if stride == 0 { row } else { stride };
         if stride < row || !stride.is_multiple_of(size_of::<T>()) {
-            let reason = format!(
-                "row_stride of {stride} bytes; it must be a multiple of {} and at least {row}",
-                size_of::<T>()
-            );
+            let multiple = match size_of::<T>() {
+                1 => String::new(),
+                bytes => format!("a multiple of {bytes} and "),
+            };
+            let reason =
+                format!("row_stride of {stride} bytes; it must be {multiple}at least {row}");
             return Err(bad_argument(name, &reason));
         }
         let before_last = (size.height as usize)
@@ -168,7 +170,7 @@ pub unsafe extern "C" fn energywave_save(
         let display = display_of(&scene, has_bloom)?;
         // SAFETY: the caller's promise, twice.
         let (path, image) = unsafe {
-            let path = border::path(path, "path")?;
+            let path = border::file(path, "path")?;
             (path, image_of(&scene, rgba, (rgba_bytes, rgba_row_stride))?)
         };
         Ok(image.save(path, &display)?)

@@ -9,9 +9,10 @@ use energywave::{Scene, SceneError};
 
 use crate::border::{self, Out, Versioned};
 use crate::device::give_text;
-use crate::override_values::{Overrides, Values};
+use crate::override_values::Overrides;
 use crate::registry;
 use crate::status::{Outcome, Status, guarded};
+use energywave::scene::Overrides as Values;
 
 /// A scene.
 #[allow(dead_code, reason = "C knows it by its name alone")]
@@ -65,10 +66,8 @@ impl SceneState {
 
     /// Shows another time, with other values; a fault leaves everything as it was.
     fn change(&mut self, values: Values, time: f64) -> Outcome {
-        let (scene, warnings) = self.read.at_with_warnings(time, |scene, keys| {
-            values.apply(scene, keys);
-            Ok(())
-        })?;
+        let adjust = |scene: &mut Scene, keys: &_| values.apply(scene, keys);
+        let (scene, warnings) = self.read.at_with_warnings(time, adjust)?;
         self.scene = Arc::new(scene);
         (self.values, self.time, self.warnings) = (values, time, warnings);
         Ok(())
@@ -99,7 +98,7 @@ pub unsafe extern "C" fn energywave_scene_from_file(
 ) -> Status {
     guarded(|| {
         // SAFETY: the caller's promise, twice.
-        let (path, scene) = unsafe { (border::path(path, "path")?, border::out(scene, "scene")?) };
+        let (path, scene) = unsafe { (border::file(path, "path")?, border::out(scene, "scene")?) };
         give(AnimatedScene::from_file(path)?, scene)
     })
 }

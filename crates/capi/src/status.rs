@@ -228,6 +228,10 @@ fn library_report(error: &Error) -> Report {
         remedy: text(match error {
             Error::Device { advice, .. } => advice,
             Error::Build { .. } => "update the driver, or choose another device",
+            Error::NoSuchDevice(_) => "choose one of those that energywave_devices gives",
+            Error::Input { .. } if !message.contains("; ") => {
+                "check the path, and what the file holds"
+            }
             _ => remedy_in(&message),
         }),
         message: text(&message),

@@ -86,7 +86,8 @@ static void overrides(energywave_scene *scene) {
     fails(energywave_scene_override(scene, &given), ARGUMENT, "\"guess\" is none; use exact, simpson, jittered");
     given.method = "simpson";
     given.sampling = "tiles";
-    fails(energywave_scene_override(scene, &given), ARGUMENT, "every pixel");
+    fails(energywave_scene_override(scene, &given), SCENE, "\"simpson\" takes every pixel");
+    holds(strcmp(last_error().key, "integration.sampling") == 0, "the key of tiles");
     given.sampling = NULL;
     given.divisions = 3;
     fails(energywave_scene_override(scene, &given), SCENE, "divisions");
@@ -149,6 +150,71 @@ static void renderers(energywave_renderer *renderer, energywave_scene *scene) {
     fails(energywave_enqueue(renderer, scene, &frame, NULL), ENERGYWAVE_STATUS_HOST, "without");
 }
 
+/* Rays that are none: which, and which coordinate of which end. */
+static void rays(energywave_renderer *renderer, energywave_scene *scene) {
+    double begins[6] = {0}, ends[6] = {0.0, 0.0, 1.0, 0.0, 0.0, 1.0}, rgb[6];
+    begins[4] = (double)NAN;
+    fails(energywave_integrate(renderer, scene, begins, ends, 2, rgb), SCENE, "ray 1: start: y is NaN");
+    holds(strcmp(last_error().key, "ray 1") == 0, "the key of a ray");
+    begins[4] = 0.0;
+    ends[0] = -(double)INFINITY;
+    fails(energywave_integrate(renderer, scene, begins, ends, 2, rgb), SCENE, "ray 0: end: x is -inf; coordinates are");
+    ends[0] = 2e9;
+    fails(energywave_integrate(renderer, scene, begins, ends, 2, rgb), SCENE, "ray 0: end: x is 2e9; float32");
+    ends[0] = 0.0;
+    fails(energywave_integrate(NULL, scene, begins, ends, 2, rgb), ARGUMENT, "renderer: NULL");
+    fails(energywave_integrate(renderer, NULL, begins, ends, 2, rgb), ARGUMENT, "scene: NULL");
+    fails(energywave_integrate(renderer, scene, begins, ends, 2, NULL), ARGUMENT, "rgb: NULL");
+    fails(energywave_integrate(renderer, scene, (double *)((char *)begins + 4), ends, 1, rgb), ARGUMENT, "origins: it");
+    works(energywave_integrate(renderer, scene, NULL, NULL, 0, NULL), "no rays");
+    works(energywave_integrate(renderer, scene, begins, ends, 2, rgb), "the rays are mended");
+}
+
+/* Choices of devices and of a scene's values that are nearly right. */
+static void choices(energywave_scene *scene) {
+    const char *const devices[] = {"", ",", " ", "99", "-1", "reference,none", "cpu.", "all,all"};
+    const struct {
+        energywave_overrides given;
+        energywave_status expected;
+        const char *words;
+    } overrides[] = {
+        {{.reserved = 1}, ARGUMENT, "overrides.reserved: 1; it must be 0"},
+        {{.method = ""}, ARGUMENT, "overrides.method: \"\" is none"},
+        {{.method = "Exact"}, ARGUMENT, "use exact, simpson, jittered"},
+        {{.sampling = "tile"}, ARGUMENT, "overrides.sampling: \"tile\" is none; use tiles, pixels"},
+        {{.antialias = "msaa"}, ARGUMENT, "use footprint, none"},
+        {{.tolerance = (double)NAN}, SCENE, "tolerance: NaN"},
+        {{.tolerance = (double)INFINITY}, SCENE, "tolerance: inf"},
+        {{.divisions = 100000}, SCENE, "from 2 to 65536"},
+        {{.width = 16385, .height = 1}, SCENE, "at most 16384"},
+        {{.width = UINT32_MAX, .height = UINT32_MAX}, SCENE, "at most 16384"},
+    };
+    energywave_renderer *renderer = NULL;
+    for (size_t i = 0; i < sizeof devices / sizeof *devices; i++) {
+        fails(energywave_renderer_new(devices[i], NULL, &renderer), ENERGYWAVE_STATUS_NO_SUCH_DEVICE, "device");
+        holds(*last_error().remedy != 0 && strchr(last_error().remedy, '\n') == NULL, "what to do about a device");
+    }
+    holds(renderer == NULL, "no renderer");
+    for (size_t i = 0; i < sizeof overrides / sizeof *overrides; i++) {
+        energywave_overrides given = overrides[i].given;
+        given.struct_size = sizeof given;
+        fails(energywave_scene_override(scene, &given), overrides[i].expected, overrides[i].words);
+    }
+}
+
+static void files(energywave_scene *scene) {
+    energywave_scene *other = NULL;
+    fails(energywave_scene_from_file("", &other), ARGUMENT, "path: it is empty");
+    fails(energywave_scene_from_file("/", &other), ENERGYWAVE_STATUS_INPUT, "/: cannot read");
+    holds(*last_error().remedy != 0, "what to do about a file");
+    fails(energywave_scene_from_text("x", NULL, &other), SCENE, "scene:1:2");
+    fails(energywave_scene_from_text("{", NULL, &other), SCENE, "scene:1:1");
+    fails(energywave_scene_from_text("{\"camera\": {}}", NULL, &other), SCENE, "camera");
+    fails(energywave_save(scene, light, sizeof light, 0, 0, ""), ARGUMENT, "path: it is empty");
+    fails(energywave_save(NULL, light, sizeof light, 0, 0, "light.png"), ARGUMENT, "scene: NULL");
+    holds(other == NULL, "no scene");
+}
+
 static void pictures(energywave_scene *scene) {
     const size_t bytes = sizeof light;
     fails(energywave_tone_map(NULL, light, bytes, 0, 0, picture, sizeof picture, 0, 4), ARGUMENT, "scene: NULL");
@@ -205,6 +271,9 @@ int main(void) {
     scenes(scene);
     overrides(scene);
     renderers(renderer, scene);
+    rays(renderer, scene);
+    choices(scene);
+    files(scene);
     pictures(scene);
     handles(renderer, scene);
     works(energywave_renderer_free(renderer), "the renderer is freed");

@@ -29,15 +29,13 @@ pub fn exception_of_object(py: Python<'_>, mut error: Error) -> PyErr {
 
 /// Makes the exception of something that was given to a function and does not fit.
 pub fn misuse(py: Python<'_>, place: &str, reason: &str, remedy: &str) -> PyErr {
-    make(
-        py,
-        &Words {
-            code: ErrorKind::Unsupported.code(),
-            message: format!("{place}: {reason}; {remedy}"),
-            place: Some(place.to_owned()),
-            remedy: remedy.to_owned(),
-        },
-    )
+    let code = ErrorKind::Unsupported.code();
+    make(py, &Words::given(code, place, reason, remedy))
+}
+
+/// Makes the exception of something that no function takes: an unknown keyword, or what is no object of its kind.
+pub fn mistype(py: Python<'_>, place: &str, reason: &str, remedy: &str) -> PyErr {
+    make(py, &Words::given("bad-argument", place, reason, remedy))
 }
 
 /// Warns of something, in a class of warnings of ours.
@@ -62,6 +60,15 @@ fn make(py: Python<'_>, words: &Words) -> PyErr {
 }
 
 impl Words {
+    fn given(code: &'static str, place: &str, reason: &str, remedy: &str) -> Self {
+        Self {
+            code,
+            message: format!("{place}: {reason}; {remedy}"),
+            place: Some(place.to_owned()),
+            remedy: remedy.to_owned(),
+        }
+    }
+
     fn of(error: &Error) -> Self {
         let message = error.to_string();
         let place = match error {

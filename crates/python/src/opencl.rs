@@ -45,7 +45,10 @@ impl Depth {
             memory: handle(&depth.getattr("memory")?, "depth.memory")?,
             is_image: depth.getattr("is_image")?.extract()?,
             along: word("depth.along", &depth.getattr("along")?, &words)?,
-            scale: depth.getattr("scale")?.extract()?,
+            scale: depth.getattr("scale")?.extract().map_err(|_| {
+                let remedy = "give a number, not 0";
+                misuse(depth.py(), "depth.scale", "it is no number", remedy)
+            })?,
             is_bottom_up: depth.getattr("is_bottom_up")?.is_truthy()?,
             offset: bytes("offset")?,
             row_pitch: bytes("row_pitch")?,
@@ -79,6 +82,11 @@ pub fn suit_drivers() -> Vec<String> {
     unsafe { energywave::suit_pocl() }
 }
 
+fn type_name(object: &Bound<'_, PyAny>) -> String {
+    let name = object.get_type().name();
+    name.map_or_else(|_| "thing".to_owned(), |name| name.to_string())
+}
+
 /// Returns the handle that an object of pyopencl's has.
 fn handle(object: &Bound<'_, PyAny>, place: &str) -> PyResult<usize> {
     let pointer = object
@@ -87,7 +95,10 @@ fn handle(object: &Bound<'_, PyAny>, place: &str) -> PyResult<usize> {
     match pointer {
         Ok(pointer) if pointer != 0 => Ok(pointer),
         _ => {
-            let reason = format!("{} has no handle (int_ptr)", object.get_type());
+            let reason = format!(
+                "it is of type {} and has no handle (int_ptr)",
+                type_name(object)
+            );
             Err(misuse(
                 object.py(),
                 place,
@@ -101,7 +112,7 @@ fn handle(object: &Bound<'_, PyAny>, place: &str) -> PyResult<usize> {
 /// Makes a renderer on the context and the device of a queue.
 pub fn renderer_on(py: Python<'_>, queue: &Bound<'_, PyAny>) -> PyResult<energywave::Renderer> {
     let context = queue.getattr("context").map_err(|_| {
-        let reason = format!("{} has no context", queue.get_type());
+        let reason = format!("it is of type {} and has no context", type_name(queue));
         misuse(py, "queue", &reason, "give a pyopencl.CommandQueue")
     })?;
     let (context_handle, queue_handle) = (handle(&context, "context")?, handle(queue, "queue")?);

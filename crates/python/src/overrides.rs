@@ -1,35 +1,21 @@
 //! Keywords that replace values of a scene: the options of the program, as `energywave render` has them.
 
-use energywave::image::{Display, Exposure, ImageSize};
-use energywave::scene::{Antialias, Method, MethodKeys, Sampling, Scene};
-use energywave::{Error, Result, nearest};
+use energywave::image::{Display, Exposure};
+use energywave::nearest;
+use energywave::scene::{Antialias, MethodName, Overrides as Values, Sampling};
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict, PyString};
 
-use crate::failure::misuse;
+use crate::failure::{mistype, misuse};
 
 /// What replaces values of a scene; all keywords are [`NAMES`].
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Overrides {
-    width: Option<u32>,
-    height: Option<u32>,
-    method: Option<MethodName>,
-    divisions: Option<u32>,
-    tolerance: Option<f64>,
-    sampling: Option<Sampling>,
-    antialias: Option<Antialias>,
-    exposure: Option<Exposure>,
+    /// What the scene has besides.
+    pub values: Values,
     /// Seconds.
-    time: f64,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum MethodName {
-    Simpson,
-    Jittered,
-    Exact,
+    pub time: f64,
 }
 
 const NAMES: [&str; 10] = [
@@ -45,10 +31,25 @@ const NAMES: [&str; 10] = [
     "t",
 ];
 
+/// Keywords that some functions have besides.
+const OTHERS: [&str; 4] = ["device", "reference", "queue", "progress"];
+
+const PIXELS: &str = "give a whole number of pixels";
+
 impl Overrides {
     /// Reads keywords; those that are None are not there.
     pub fn of(keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut read = Self::default();
+        let is_there = |name| {
+            let value = keywords.get_item(name);
+            value.map(|it| it.is_some_and(|it| !it.is_none()))
+        };
+        for name in ["width", "height"] {
+            if is_there("size")? && is_there(name)? {
+                let remedy = "give one of them";
+                return Err(misuse(keywords.py(), name, "`size` says it, too", remedy));
+            }
+        }
         for (name, value) in keywords {
             let name: String = name.extract()?;
             if !value.is_none() {
@@ -59,116 +60,78 @@ impl Overrides {
     }
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let pixels = "give a whole number of pixels";
+        let values = &mut self.values;
         match name {
             "size" => {
-                let (width, height) = read(name, value, "give (width, height), pixels")?;
-                (self.width, self.height) = (Some(width), Some(height));
+                let (width, height) = size(value)?;
+                (values.width, values.height) = (Some(width), Some(height));
             }
-            "width" => self.width = Some(read(name, value, pixels)?),
-            "height" => self.height = Some(read(name, value, pixels)?),
-            "method" => {
-                let words = [
-                    ("exact", MethodName::Exact),
-                    ("simpson", MethodName::Simpson),
-                    ("jittered", MethodName::Jittered),
-                ];
-                self.method = Some(word(name, value, &words)?);
-            }
-            "divisions" => self.divisions = Some(read(name, value, "give a whole number")?),
-            "tolerance" => self.tolerance = Some(read(name, value, "give a number")?),
-            "sampling" => {
-                let words = [("tiles", Sampling::Tiles), ("pixels", Sampling::Pixels)];
-                self.sampling = Some(word(name, value, &words)?);
-            }
-            "antialias" => {
-                let words = [
-                    ("footprint", Antialias::Footprint),
-                    ("none", Antialias::None),
-                ];
-                self.antialias = Some(word(name, value, &words)?);
-            }
+            "width" => values.width = Some(read(name, value, PIXELS)?),
+            "height" => values.height = Some(read(name, value, PIXELS)?),
+            "method" => values.method = Some(word(name, value, &MethodName::WORDS)?),
+            "divisions" => values.divisions = Some(read(name, value, "give a whole number")?),
+            "tolerance" => values.tolerance = Some(read(name, value, "give a number")?),
+            "sampling" => values.sampling = Some(word(name, value, &Sampling::WORDS)?),
+            "antialias" => values.antialias = Some(word(name, value, &Antialias::WORDS)?),
             "exposure" => {
-                self.exposure = Some(match value.extract::<f64>() {
+                values.exposure = Some(match value.extract::<f64>() {
                     Ok(stops) => Exposure::Stops(stops),
                     Err(_) => word(name, value, &[("auto", Exposure::Auto)])?,
                 });
             }
-            "t" => self.time = read(name, value, "give seconds, a number")?,
-            _ => return Err(unknown(name)),
+            "t" => {
+                let remedy = "give seconds, a finite number";
+                let time: f64 = read(name, value, remedy)?;
+                if !time.is_finite() {
+                    return Err(unfit(name, value, remedy));
+                }
+                self.time = time;
+            }
+            _ => return Err(unknown(value.py(), name)),
         }
         Ok(())
-    }
-
-    /// Returns the time of the scene, seconds.
-    pub fn time(&self) -> f64 {
-        self.time
     }
 
     /// Returns the same at another time.
     pub fn at(&self, time: f64) -> Self {
-        Self {
-            time,
-            ..self.clone()
-        }
-    }
-
-    /// Replaces what was given. `keys` is what the scene says of all methods.
-    pub fn apply(&self, scene: &mut Scene, keys: &MethodKeys) -> Result<()> {
-        scene.image = ImageSize {
-            width: self.width.unwrap_or(scene.image.width),
-            height: self.height.unwrap_or(scene.image.height),
-        };
-        scene.integration.method = self.method(scene.integration.method, keys)?;
-        let integration = &mut scene.integration;
-        integration.antialias = self.antialias.unwrap_or(integration.antialias);
-        scene.display.exposure = self.exposure.unwrap_or(scene.display.exposure);
-        Ok(())
+        Self { time, ..*self }
     }
 
     /// Returns the display where there is no scene.
-    pub fn display(&self) -> Display {
-        Display {
-            exposure: self.exposure.unwrap_or_default(),
+    pub fn display(&self, py: Python<'_>) -> PyResult<Display> {
+        let exposure = self.values.exposure.unwrap_or_default();
+        if let Exposure::Stops(stops) = exposure
+            && !(-100.0..=100.0).contains(&stops)
+        {
+            let reason = format!("{stops} is no exposure");
+            return Err(misuse(
+                py,
+                "exposure",
+                &reason,
+                "give stops, -100 to 100, or \"auto\"",
+            ));
+        }
+        Ok(Display {
+            exposure,
             ..Display::default()
-        }
-    }
-
-    /// Naming divisions asks for a sum of so many, naming a tolerance or a sampling for the integral.
-    fn method(&self, of_scene: Method, keys: &MethodKeys) -> Result<Method> {
-        let asks_sum = self.divisions.is_some();
-        let asks_exact = self.tolerance.is_some() || self.sampling.is_some();
-        let of_scene = match of_scene {
-            Method::Simpson { .. } => MethodName::Simpson,
-            Method::Jittered { .. } => MethodName::Jittered,
-            _ => MethodName::Exact,
-        };
-        let name = match self.method {
-            Some(name) => name,
-            None if asks_sum == asks_exact => of_scene,
-            None if asks_exact => MethodName::Exact,
-            None if of_scene == MethodName::Exact => MethodName::Simpson,
-            None => of_scene,
-        };
-        let is_exact = matches!(name, MethodName::Exact);
-        if !is_exact && matches!(self.sampling, Some(Sampling::Tiles)) {
-            let message =
-                "sampling=\"tiles\" is for the method \"exact\"; the others take every pixel";
-            return Err(Error::Unsupported(message.to_owned()));
-        }
-        let divisions = self.divisions.unwrap_or(keys.divisions);
-        Ok(match name {
-            MethodName::Simpson => Method::Simpson { divisions },
-            MethodName::Jittered => Method::Jittered {
-                divisions,
-                seed: keys.seed,
-            },
-            MethodName::Exact => Method::Exact {
-                tolerance: self.tolerance.unwrap_or(keys.tolerance),
-                sampling: self.sampling.unwrap_or(keys.sampling),
-            },
         })
     }
+}
+
+/// Reads two whole numbers: a tuple, a list, an array.
+fn size(value: &Bound<'_, PyAny>) -> PyResult<(u32, u32)> {
+    let remedy = "give (width, height), whole numbers of pixels";
+    let unfit = || unfit("size", value, remedy);
+    if value.is_instance_of::<PyString>() {
+        return Err(unfit());
+    }
+    let parts = value.try_iter().map_err(|_| unfit())?.take(3);
+    let parts = parts.collect::<PyResult<Vec<_>>>().map_err(|_| unfit())?;
+    let [width, height] = parts.as_slice() else {
+        return Err(unfit());
+    };
+    let whole = |part: &Bound<'_, PyAny>| part.extract::<u32>().map_err(|_| unfit());
+    Ok((whole(width)?, whole(height)?))
 }
 
 /// Reads a value.
@@ -177,6 +140,10 @@ fn read<'py, T: FromPyObjectOwned<'py>>(
     value: &Bound<'py, PyAny>,
     remedy: &str,
 ) -> PyResult<T> {
+    // To Python, True is 1.
+    if value.is_instance_of::<PyBool>() {
+        return Err(unfit(name, value, remedy));
+    }
     value.extract().map_err(|_| unfit(name, value, remedy))
 }
 
@@ -203,10 +170,14 @@ pub fn word<T: Copy>(name: &str, value: &Bound<'_, PyAny>, words: &[(&str, T)]) 
     })
 }
 
-fn unknown(name: &str) -> PyErr {
+fn unknown(py: Python<'_>, name: &str) -> PyErr {
     let shown = energywave::shown(name);
-    PyTypeError::new_err(match nearest(name, NAMES) {
-        Some(meant) => format!("unknown keyword `{shown}`; did you mean `{meant}`?"),
-        None => format!("unknown keyword `{shown}`; there are {}", NAMES.join(", ")),
-    })
+    let remedy = match nearest(name, NAMES.into_iter().chain(OTHERS)) {
+        Some(meant) if meant == name => {
+            format!("a renderer is given one when it is made: Renderer({meant}=...)")
+        }
+        Some(meant) => format!("did you mean `{meant}`?"),
+        None => format!("there are {}", NAMES.join(", ")),
+    };
+    mistype(py, name, &format!("unknown keyword `{shown}`"), &remedy)
 }

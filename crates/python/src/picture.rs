@@ -64,7 +64,7 @@ fn display_of(
 ) -> PyResult<Display> {
     match scene {
         Some(scene) => Ok(scene.frame(py, overrides)?.display.clone()),
-        None => Ok(overrides.display()),
+        None => overrides.display(py),
     }
 }
 
@@ -89,8 +89,8 @@ fn image_of(py: Python<'_>, radiance: &PyReadonlyArray3<'_, f32>) -> PyResult<Ra
     let made = RadianceImage::new(ImageSize { width, height });
     let mut image = made.map_err(|error| exception(py, &error))?;
     match radiance.as_slice() {
-        Ok(values) => image.as_mut_slice().copy_from_slice(values),
-        Err(_) => {
+        Ok(values) if radiance.is_c_contiguous() => image.as_mut_slice().copy_from_slice(values),
+        _ => {
             let values = radiance.as_array();
             let pairs = image.as_mut_slice().iter_mut().zip(values.iter());
             pairs.for_each(|(to, from)| *to = *from);

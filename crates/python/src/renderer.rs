@@ -94,7 +94,8 @@ fn check_target(py: Python<'_>, shape: &[usize], scene: &Scene) -> PyResult<()> 
     }
 }
 
-/// Returns rows of three numbers, copied unless they lie one behind the other.
+/// Returns rows of three numbers, copied unless they lie one behind the other. (An array in Fortran's order, such as
+/// `numpy.array([x, y, z]).T`, has a slice, too: of columns.)
 fn points<'a>(
     py: Python<'_>,
     place: &str,
@@ -105,8 +106,8 @@ fn points<'a>(
         return Err(misuse(py, place, &reason, "give one of (n, 3)"));
     }
     Ok(match array.as_slice() {
-        Ok(values) => Cow::Borrowed(values.as_chunks().0),
-        Err(_) => {
+        Ok(values) if array.is_c_contiguous() => Cow::Borrowed(values.as_chunks().0),
+        _ => {
             let rows = array.as_array();
             let rows = rows.rows().into_iter();
             rows.map(|row| [row[0], row[1], row[2]]).collect()
@@ -176,14 +177,12 @@ impl Renderer {
     ) -> PyResult<()> {
         let scene = scene.frame(py, &Overrides::of(overrides)?)?;
         check_target(py, array.shape(), &scene)?;
-        let Ok(target) = array.as_slice_mut() else {
-            let remedy = "give a whole array, or copy a part of one (numpy.ascontiguousarray)";
-            return Err(misuse(
-                py,
-                "array",
-                "its values do not lie one behind the other",
-                remedy,
-            ));
+        let is_in_order = array.is_c_contiguous();
+        let (true, Ok(target)) = (is_in_order, array.as_slice_mut()) else {
+            let reason = "its values do not lie one behind the other, row by row";
+            let remedy =
+                "give a whole array in C's order, or copy a part of one (numpy.ascontiguousarray)";
+            return Err(misuse(py, "array", reason, remedy));
         };
         self.work(py, progress, |renderer, progress| {
             renderer.render_into_with_progress(&scene, target, progress)
@@ -201,7 +200,7 @@ impl Renderer {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let read = Overrides::of(overrides)?;
-        let open = scene.open_at(read.time(), rate);
+        let open = scene.open_at(read.time, rate);
         if open.is_empty() {
             return self.render(py, scene, overrides, progress);
         }

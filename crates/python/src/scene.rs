@@ -40,15 +40,16 @@ impl OpenedScene {
             return Ok(scene.clone());
         }
         let read = py.detach(|| {
-            self.scene
-                .at_with_warnings(overrides.time(), |scene, keys| overrides.apply(scene, keys))
+            self.scene.at_with_warnings(overrides.time, |scene, keys| {
+                overrides.values.apply(scene, keys)
+            })
         });
         let (scene, warnings) = read.map_err(|error| failure(py, error, self.is_object))?;
         for warning in warnings {
             warn(py, "SceneWarning", &self.words_of(warning))?;
         }
         let scene = Arc::new(scene);
-        let kept = Some((overrides.clone(), scene.clone()));
+        let kept = Some((*overrides, scene.clone()));
         *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = kept;
         Ok(scene)
     }
@@ -62,8 +63,8 @@ impl OpenedScene {
 
     /// Returns the scene at a moment of a frame.
     pub fn at(&self, overrides: &Overrides) -> Result<Scene> {
-        let adjust = |scene: &mut Scene, keys: &_| overrides.apply(scene, keys);
-        self.scene.at_with(overrides.time(), adjust)
+        let adjust = |scene: &mut Scene, keys: &_| overrides.values.apply(scene, keys);
+        self.scene.at_with(overrides.time, adjust)
     }
 
     /// Returns from when to when the shutter is open in a frame.

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use energywave::{Error, Result};
 use pyo3::prelude::*;
 
-use crate::failure::exception;
+use crate::failure::{exception, mistype};
 
 /// Python's lock is taken no more often.
 const BETWEEN: Duration = Duration::from_millis(40);
@@ -53,6 +53,14 @@ pub fn watched<T: Send>(
     told: Option<Py<PyAny>>,
     work: impl FnOnce(&mut Progress<'_>) -> Result<T> + Send,
 ) -> PyResult<T> {
+    if let Some(told) = told.as_ref().map(|it| it.bind(py))
+        && !told.is_callable()
+    {
+        let shown = told.repr().map(|it| it.to_string()).unwrap_or_default();
+        let reason = format!("{} is no function", energywave::shown(&shown));
+        let remedy = "give one that takes the finished share, 0 to 1";
+        return Err(mistype(py, "progress", &reason, remedy));
+    }
     let mut watch = Watch {
         told,
         raised: None,

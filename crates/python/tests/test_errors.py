@@ -91,13 +91,156 @@ def test_arrays_that_do_not_fit_are_named(scene, renderer):
     three, four = np.zeros((3, 3)), np.ones((4, 3))
     for place, call in [
         ("ends", lambda: renderer.integrate(scene, three, four)),
-        ("origins", lambda: renderer.integrate(scene, "abc", four)),
-        ("normals", lambda: renderer.irradiance(scene, three, four)),
+                ("normals", lambda: renderer.irradiance(scene, three, four)),
         ("queue", lambda: ew.Renderer(queue=3)),
     ]:
         with pytest.raises(ew.UnsupportedError, match=f"^{place}: ") as raised:
             call()
         assert raised.value.place == place
+
+
+ON_Z = [0.0, 0.0, 1.0]
+NAN, INFINITY = float("nan"), float("inf")
+
+
+@pytest.mark.parametrize(
+    "origin, end, words",
+    [
+        ([0, 0, NAN], ON_Z, "start: z is NaN; coordinates are finite"),
+        (ON_Z, [0, INFINITY, 0], "end: y is inf; coordinates are finite"),
+        (ON_Z, [-INFINITY, NAN, 0], "end: x is -inf"),
+        (ON_Z, [2e9, 0, 0], "end: x is 2e9; float32 devices"),
+        ([0, -2.5e9, 0], ON_Z, "start: y is -2.5e9; float32 devices"),
+        ([-9e8, 0, 0], [9e8, 0, 0], "longer than"),
+        (ON_Z, ON_Z, "start and end are less than 1e-9 apart"),
+    ],
+)
+def test_a_ray_that_is_none_is_named_with_its_coordinate(scene, renderer, origin, end, words):
+    fine = [[0, 0, 0]] * 2
+    for reference in [False, True]:
+        with pytest.raises(ew.SceneError, match=f"^scene: ray 2: {words}") as raised:
+            ew.integrate(scene, [*fine, origin], [ON_Z, ON_Z, end], reference=reference)
+        assert raised.value.place == "ray 2" and raised.value.remedy
+    if not np.isfinite(origin).all():
+        with pytest.raises(ew.SceneError, match="point 0: z is NaN"):
+            renderer.irradiance(scene, origin, ON_Z)
+        with pytest.raises(ew.SceneError, match="normal 0: .* not finite"):
+            renderer.irradiance(scene, ON_Z, origin)
+
+
+def test_a_file_that_cannot_be_loaded_is_named(tmp_path):
+    """As those that are only drawn, and by line and column."""
+    pytest.importorskip("tomllib")
+    for name, text, kind, place in [
+        ("none.toml", None, FileNotFoundError, "none.toml"),
+        ("none.json", None, ew.InputError, "none.json"),
+        ("folder.toml", "/", ew.InputError, "folder.toml"),
+        ("open.json", "{", ew.SceneError, "open.json:1:1"),
+        ("list.json", "[1]", ew.SceneError, "list.json:1:2"),
+        ("empty.toml", "camera =\n", ew.SceneError, "empty.toml:1:9"),
+        ("key.toml", "[camera]\neye = [0, -4, 2]\ntarget = [0, 0, 0]\ney = 3\n", ew.SceneError, "key.toml:4:1"),
+        ("bytes.toml", b"\xff\xfe", ew.InputError, "bytes.toml"),
+    ]:
+        file = tmp_path / name
+        if isinstance(text, bytes):
+            file.write_bytes(text)
+        elif text == "/":
+            file.mkdir()
+        elif text is not None:
+            file.write_text(text)
+        for call in [ew.Scene.load, ew.open_scene]:
+            with pytest.raises(kind) as raised:
+                call(file)
+            error = raised.value
+            assert isinstance(error, ew.Error) and error.place == str(tmp_path / place) and error.remedy, name
+            if text is None:
+                assert isinstance(error, ew.NoSuchFileError) and isinstance(error, OSError) and error.code == "input"
+                again = pickle.loads(pickle.dumps(error))
+                assert type(again) is type(error) and (str(again), again.place) == (str(error), error.place)
+
+
+WRONG = {
+    "frames": [
+        *(dict(frames=[it]) for it in [-1, NAN, 1.5, 2.0, 10**8, "a", None, True]),
+        *(dict(frames=it) for it in [-3, 2.5, "12", object(), True, range(-1, 3), np.arange(3) - 1, np.zeros(2)]),
+    ],
+    "fps": [dict(frames=1, fps=it) for it in [0, -1, NAN, INFINITY, "x", None, 1e6]],
+    "t": [dict(frames=1, t=1.0)],
+}
+
+
+@pytest.mark.parametrize("place", WRONG)
+def test_frames_are_whole_numbers_from_0_on(scene, renderer, place):
+    for keywords in WRONG[place]:
+        with pytest.raises(ew.UnsupportedError, match=f"^{place}: ") as raised:
+            renderer.animate(scene, **keywords)
+        assert raised.value.place == place and raised.value.remedy, keywords
+    for frame in [-1, 0.5, NAN]:
+        with pytest.raises(ew.UnsupportedError, match="^frames: "):
+            renderer.animate(scene, frames=1).draw(frame)
+    for frames, count in [(0, 0), (3, 3), (np.int64(2), 2), (np.arange(2), 2), (range(5, 1, -2), 2), ([], 0)]:
+        assert len(renderer.animate(scene, frames=frames)) == count
+
+
+MISTAKEN = {  # what is given, and the place of the fault
+    "scene": [lambda it: ew.render(it), [None, 3, [1], "", np.zeros(3), ew.Torus(major_radius=1), ew.Scene]],
+    "path": [lambda it: ew.Scene.load(it), [None, 3, "", ["a"]]],
+    "tables": [lambda it: ew.Scene.from_dict(it), [None, [1], "abc"]],
+    "torus": [lambda it: ew.Scene(torus=it), [3, "abc", ew.Torus(major_radius=1), {"major_radius": 1}]],
+    "device": [lambda it: ew.render(ring(), device=it), [1.5, [0], True, {}]],
+    "progress": [lambda it: ew.render(ring(), progress=it), [3, "abc"]],
+    "origins": [
+        lambda it: ew.integrate(ring(), it, [ON_Z]),
+        [None, "abc", [["0", "0", "0"]], [[1j, 0, 0]], [[None, 0, 0]], [[0, 0, 0], [0]], np.zeros((1, 3), bool),
+         np.zeros((1, 3), "M8[s]"), object()],
+    ],
+    "radiance": [lambda it: ew.tone_map(it), [None, "abc", np.zeros((2, 2, 4), complex), [[1], [1, 2]]]],
+    "pixels": [lambda it: ew.Picture(it), [None, 3, np.zeros((3, 3), np.uint8), np.zeros((3, 3, 3))]],
+    "Torus": [lambda it: ew.Torus(it), [1]],
+    "widht": [lambda it: ew.render(ring(), widht=it), [3]],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("place", MISTAKEN)
+def test_what_no_call_takes_is_an_error_of_ours_and_of_pythons(place):
+    call, things = MISTAKEN[place]
+    for thing in things:
+        with pytest.raises(TypeError) as raised:
+            call(thing)
+        error = raised.value
+        assert isinstance(error, ew.ArgumentError), (thing, error)
+        assert (error.code, error.place) == ("bad-argument", place) and str(error).startswith(f"{place}: "), thing
+        assert error.remedy and str(error).endswith(error.remedy), thing
+
+
+def test_other_arguments_that_do_not_fit_are_named(scene, renderer, tmp_path):
+    light = np.ones((2, 2, 4), np.float32)
+    for place, call in [
+        ("device", lambda: ew.Renderer("gpu", reference=True)),
+        ("reference", lambda: ew.Renderer(queue=3, reference=True)),
+        ("width", lambda: renderer.render(scene, width=3, size=(3, 4))),
+        ("size", lambda: renderer.render(scene, size="34")),
+        ("size", lambda: renderer.render(scene, size=(2**40, 3))),
+        ("height", lambda: renderer.render(scene, height=True)),
+        ("t", lambda: renderer.render(scene, t=NAN)),
+        ("exposure", lambda: ew.tone_map(light, exposure=1e9)),
+        ("exposure", lambda: ew.tone_map(light, exposure=NAN)),
+        ("path", lambda: ew.save(light, "light.png")),
+        ("radiance", lambda: ew.tone_map(light[:0])),
+    ]:
+        with pytest.raises(ew.UnsupportedError, match=f"^{place}: ") as raised:
+            call()
+        assert raised.value.place == place and raised.value.remedy
+    error = fault(scene, method="simpson", sampling="tiles")
+    assert error.place == "integration.sampling" and isinstance(error, ew.SceneError)
+    with pytest.raises(ew.ArgumentError, match="Renderer\\(device="):
+        renderer.render(scene, device="cpu")
+    with pytest.raises(ew.ArgumentError, match="did you mean `device`"):
+        ew.render(scene, devcie="cpu")
+    with pytest.raises(ew.OutputError) as raised:
+        ew.tone_map(light).save_png(tmp_path / "none" / "light.png")
+    assert raised.value.place == str(tmp_path / "none" / "light.png")
+    assert np.array_equal(renderer.render(scene, size=np.array([3, 2])), renderer.render(scene, size=[3, 2]))
 
 
 def test_exceptions_come_whole_out_of_another_process(scene):

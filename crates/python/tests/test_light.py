@@ -46,10 +46,33 @@ def test_an_array_that_is_there_gets_the_same_light(scene, renderer):
     array = np.full((48, 64, 4), np.nan, np.float32)
     renderer.render_into(scene, array)
     assert np.array_equal(array, renderer.render(scene))
-    for wrong in [array[:, :32], np.empty((48, 64, 4)), np.empty((64, 48, 4), np.float32), array[::-1], [1.0]]:
+    shaped = [array[:, :32], np.empty((48, 64, 4)), np.empty((64, 48, 4), np.float32)]
+    for wrong in [*shaped, array[::-1], np.asfortranarray(array), [1.0]]:
         with pytest.raises(ew.UnsupportedError) as raised:
             renderer.render_into(scene, wrong)
         assert raised.value.place == "array"
+
+
+def test_arrays_in_any_order_are_read_by_their_axes(scene, renderer):
+    """Points that come as columns, every other one, backwards, or with the first axis closest together."""
+    begins, ends = np.random.default_rng(2).normal(size=(2, 40, 3)) + [[[0, -4, 2]], [[0, 1, 0]]]
+    ways = [
+        np.asfortranarray,
+        lambda points: np.array(list(points.T)).T,
+        lambda points: np.repeat(points, 2, axis=0)[::2],
+        lambda points: points[::-1].copy()[::-1],
+        lambda points: np.pad(points, ((0, 0), (1, 2)))[:, 1:4],
+    ]
+    for call in [renderer.integrate, renderer.irradiance]:
+        light = call(scene, begins, ends)
+        for way in ways:
+            assert np.array_equal(call(scene, way(begins), ends), light)
+            assert np.array_equal(call(scene, begins, way(ends)), light)
+        assert not np.array_equal(call(scene, begins.T.reshape(-1, 3), ends), light)  # what a mistaken order gives
+    light = renderer.render(scene)
+    pixels = ew.tone_map(light).pixels
+    for other in [np.asfortranarray(light), light[::-1].copy()[::-1], np.repeat(light, 2, axis=1)[:, ::2]]:
+        assert np.array_equal(ew.tone_map(other).pixels, pixels)
 
 
 def test_keywords_replace_values(scene, renderer):

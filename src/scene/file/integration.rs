@@ -1,5 +1,9 @@
 //! `[integration]` of a scene file.
 
+mod overrides;
+
+pub use overrides::Overrides;
+
 use serde::{Deserialize, Serialize};
 
 use crate::scene::integration::{
@@ -84,11 +88,15 @@ keys! { pub(in crate::scene) INTEGRATION_KEYS;
         "many points: their light together, or of each by itself";
 }
 
+/// The name of a [`Method`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
-enum MethodName {
+pub enum MethodName {
+    /// Simpson's rule with equal divisions.
     Simpson,
+    /// A random place of each division.
     Jittered,
+    /// The integral.
     Exact,
 }
 
@@ -249,12 +257,17 @@ impl IntegrationTable {
             MethodName::Jittered => check_strata(keys.divisions)?,
             MethodName::Simpson | MethodName::Exact => check_divisions(keys.divisions)?,
         }
-        if self.method != MethodName::Exact && self.sampling == Some(Sampling::Tiles) {
-            let name = self.integration().method.name();
-            let message =
-                format!("tiles are for the method \"exact\"; \"{name}\" takes every pixel");
-            return Err(Fault::new("sampling", message));
-        }
+        check_sampling(&self.integration().method, self.sampling)?;
         check_tolerance(keys.tolerance)
     }
+}
+
+/// Checks that who names tiles has the method that they are for.
+pub(super) fn check_sampling(method: &Method, named: Option<Sampling>) -> Checked {
+    if matches!(method, Method::Exact { .. }) || named != Some(Sampling::Tiles) {
+        return Ok(());
+    }
+    let name = method.name();
+    let message = format!("tiles are for the method \"exact\"; \"{name}\" takes every pixel");
+    Err(Fault::new("sampling", message))
 }

@@ -51,7 +51,7 @@ pub(super) use groups::GROUP_KEYS;
 use groups::{GroupTable, Groups};
 pub(super) use integration::INTEGRATION_KEYS;
 use integration::IntegrationTable;
-pub use integration::MethodKeys;
+pub use integration::{MethodKeys, MethodName, Overrides};
 pub(super) use lit_points::POINTS_KEYS;
 use lit_points::PointsTable;
 pub(super) use mesh::MESH_KEYS;

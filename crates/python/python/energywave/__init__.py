@@ -14,12 +14,14 @@ from ._energywave import OpenedScene
 from ._animation import Animation
 from ._devices import Device, Devices, devices
 from ._errors import (
+    ArgumentError,
     DeviceError,
     Error,
     HostError,
     InputError,
     NoDeviceWarning,
     NoSuchDeviceError,
+    NoSuchFileError,
     OutOfMemoryError,
     OutputError,
     SceneError,
@@ -45,9 +47,9 @@ from ._tables import __all__ as _tables_all
 __version__ = "0.1.0"
 
 __all__ = [
-    "Animation", "Device", "DeviceError", "Devices", "Error", "HostDepth", "HostError", "InputError", "NoDeviceWarning",
-    "NoSuchDeviceError", "OpenedScene", "OutOfMemoryError", "OutputError", "Picture", "Renderer", "Scene", "SceneError",
-    "SceneWarning", "Table", "UnsupportedError", "animate", "devices", "error_map", "integrate", "irradiance",
-    "open_scene", "rays", "render", "save", "tone_map",
+    "Animation", "ArgumentError", "Device", "DeviceError", "Devices", "Error", "HostDepth", "HostError", "InputError",
+    "NoDeviceWarning", "NoSuchDeviceError", "NoSuchFileError", "OpenedScene", "OutOfMemoryError", "OutputError",
+    "Picture", "Renderer", "Scene", "SceneError", "SceneWarning", "Table", "UnsupportedError", "animate", "devices",
+    "error_map", "integrate", "irradiance", "open_scene", "rays", "render", "save", "tone_map",
 ]  # fmt: skip
 __all__ += _tables_all

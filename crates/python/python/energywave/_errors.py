@@ -5,10 +5,11 @@ Every exception derives from :class:`Error` and from the built-in class that Pyt
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import warnings
-from typing import Any, Optional, Tuple
+from typing import Any, Optional, Tuple, Type
 
 
 class Error(Exception):
@@ -26,7 +27,13 @@ class Error(Exception):
 
     def __reduce__(self) -> Tuple[Any, ...]:
         # So that it comes whole out of another process.
-        return make, (self.code, str(self), self.place, self.remedy)
+        return _remake, (type(self), str(self), self.code, self.place, self.remedy)
+
+
+def _remake(kind: Type[Error], message: str, code: str, place: Optional[str], remedy: str) -> Error:
+    error = kind(message)
+    error.code, error.place, error.remedy = code, place, remedy
+    return error
 
 
 class SceneError(Error, ValueError):
@@ -37,8 +44,16 @@ class InputError(Error, OSError):
     """An input file cannot be read. Code ``input``."""
 
 
+class NoSuchFileError(InputError, FileNotFoundError):
+    """An input file is not there. Code ``input``."""
+
+
 class UnsupportedError(Error, ValueError):
     """The device, this build or an argument lacks what is asked for. Code ``unsupported``."""
+
+
+class ArgumentError(UnsupportedError, TypeError):
+    """What no call takes: an unknown keyword, a thing of another type. Code ``bad-argument``."""
 
 
 class DeviceError(Error, RuntimeError):
@@ -73,6 +88,7 @@ _CLASSES = {
     "scene": SceneError,
     "input": InputError,
     "unsupported": UnsupportedError,
+    "bad-argument": ArgumentError,
     "no-such-device": NoSuchDeviceError,
     "build": DeviceError,
     "self-test": DeviceError,
@@ -86,9 +102,24 @@ _CLASSES = {
 
 def make(code: str, message: str, place: Optional[str], remedy: str) -> Error:
     """Makes the exception of a kind of fault."""
-    error = _CLASSES.get(code, Error)(message)
+    kind = _CLASSES.get(code, Error)
+    if kind is InputError and place and not os.path.lexists(place):
+        kind = NoSuchFileError
+    error = kind(message)
+    if isinstance(error, NoSuchFileError):
+        error.errno = errno.ENOENT
     error.code, error.place, error.remedy = code, place, remedy
     return error
+
+
+def mistype(place: str, reason: str, remedy: str) -> Error:
+    """Makes the exception of what no call takes."""
+    return make("bad-argument", f"{place}: {reason}; {remedy}", place, remedy)
+
+
+def misuse(place: str, reason: str, remedy: str) -> Error:
+    """Makes the exception of what a call takes, and not such a one."""
+    return make("unsupported", f"{place}: {reason}; {remedy}", place, remedy)
 
 
 def warn(category: str, message: str) -> None:

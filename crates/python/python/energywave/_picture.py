@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 
 from . import _energywave
-from ._errors import make
+from ._errors import make, mistype, misuse
+from ._given import numbers
+from ._given import path as path_of
 from ._scene import open_scene
 
 if TYPE_CHECKING:
@@ -29,6 +31,10 @@ class Picture:
     """
 
     def __init__(self, pixels: "NDArray[Any]") -> None:
+        channels = pixels.shape[-1] if isinstance(pixels, np.ndarray) and pixels.ndim == 3 else 0
+        if channels not in (3, 4) or pixels.dtype not in (np.uint8, np.uint16):
+            remedy = "pixels are an array of uint8 or uint16, (height, width, 3 or 4); tone_map makes them of light"
+            raise mistype("pixels", "they are none of a picture", remedy)
         self.pixels = pixels
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> "NDArray[Any]":
@@ -42,9 +48,18 @@ class Picture:
         return png(self.pixels)
 
     def save_png(self, path: "Union[str, os.PathLike[str]]") -> None:
-        """Writes it as PNG. :func:`energywave.save` writes light to other formats, too."""
-        with open(path, "wb") as file:
-            file.write(self._repr_png_())
+        """Writes it as PNG. :func:`energywave.save` writes light to other formats, too.
+
+        Raises:
+            OutputError: for a file that cannot be written.
+        """
+        name = path_of("path", path)
+        try:
+            with open(name, "wb") as file:
+                file.write(self._repr_png_())
+        except OSError as error:
+            remedy = "check the path, and what is left of the disk"
+            raise make("output", f"{name}: cannot write: {error.strerror}; {remedy}", name, remedy) from error
 
 
 def png(pixels: "NDArray[Any]") -> bytes:
@@ -69,10 +84,10 @@ def png(pixels: "NDArray[Any]") -> bytes:
 
 
 def _light(radiance: "ArrayLike") -> "NDArray[np.float32]":
-    light = np.asarray(radiance, np.float32)
+    remedy = "light is (height, width, 4), as render gives it"
+    light = numbers("radiance", radiance, np.float32, remedy)
     if light.ndim != 3:
-        remedy = "light is (height, width, 4), as render gives it"
-        raise make("unsupported", f"radiance: an array of shape {list(light.shape)}; {remedy}", "radiance", remedy)
+        raise misuse("radiance", f"an array of shape {list(light.shape)}", remedy)
     return light
 
 
@@ -108,4 +123,6 @@ def save(
         UnsupportedError: for an array of another shape.
     """
     opened = None if scene is None else open_scene(scene)
-    _energywave.save(os.fspath(path), _light(radiance), opened, overrides)
+    if isinstance(path, np.ndarray):
+        raise mistype("path", "it is an array", "the path is first: save(path, light)")
+    _energywave.save(path_of("path", path), _light(radiance), opened, overrides)

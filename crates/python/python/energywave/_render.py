@@ -10,7 +10,8 @@ import numpy as np
 from . import _energywave
 from ._animation import Animation
 from ._devices import Device
-from ._errors import make
+from ._errors import mistype, misuse
+from ._given import numbers
 from ._host import HostDepth, is_image
 from ._scene import open_scene
 
@@ -68,6 +69,7 @@ class Renderer:
         reference: bool = False,
         queue: Any = None,
     ) -> None:
+        _check_choice(device, reference, queue)
         if queue is not None:
             self._native = _energywave.Renderer.on_queue(queue)
             return
@@ -121,10 +123,9 @@ class Renderer:
         if not isinstance(array, np.ndarray) or array.dtype != np.float32 or array.ndim != 3:
             found = f"{array.dtype} of {array.ndim} axes" if isinstance(array, np.ndarray) else type(array).__name__
             remedy = "give numpy.empty((height, width, 4), numpy.float32)"
-            raise make("unsupported", f"array: it is {found}; {remedy}", "array", remedy)
+            raise misuse("array", f"it is {found}", remedy)
         if not array.flags.writeable:
-            remedy = "give one that may be written"
-            raise make("unsupported", f"array: it is read-only; {remedy}", "array", remedy)
+            raise misuse("array", "it is read-only", "give one that may be written")
         self._native.render_into(open_scene(scene), array, overrides, progress)
 
     def integrate(
@@ -147,8 +148,8 @@ class Renderer:
             of devices correct to float32, of the reference to 1e-10.
 
         Raises:
-            SceneError: also for a ray that is shorter than 1e-9 or beyond 1e9.
-            UnsupportedError: for arrays that are no points.
+            SceneError: also for a ray that is shorter than 1e-9, beyond 1e9, or no number; its place is ``ray 7``.
+            UnsupportedError: for arrays that are no points; an ArgumentError for what is no array of numbers.
         """
         begins, ends = _pairs(("origins", "ends"), origins, ends)
         shape = begins.shape
@@ -213,11 +214,12 @@ class Renderer:
 
         Args:
             fps: frames a second; 23.976 and the like are best given as a Fraction.
-            frames: how many, or their numbers; None: as long as the scene moves, without the frame that is the first
-                again where it loops.
+            frames: how many, or their numbers, whole ones from 0 to 99999999; None: as long as the scene moves,
+                without the frame that is the first again where it loops.
 
         Raises:
-            UnsupportedError: if ``frames`` is None and the scene doesn't say how long it moves.
+            UnsupportedError: if ``frames`` is None and the scene doesn't say how long it moves; for other numbers, and
+                for ``t``: frames have times of their own.
         """
         return Animation(self, open_scene(scene), fps, frames, progress, overrides)
 
@@ -256,15 +258,22 @@ class Renderer:
         return pyopencl.Event.from_int_ptr(event, retain=False)
 
 
+def _check_choice(device: Any, reference: bool, queue: Any = None) -> None:
+    """Checks that one thing at most says what draws."""
+    if device is not None and (isinstance(device, bool) or not isinstance(device, (str, int, np.integer, Device))):
+        remedy = "give a number of devices(), a part of a name, \"gpu\", \"cpu\" or \"all\""
+        raise mistype("device", f"it is of type {type(device).__name__}", remedy)
+    given = [("device", device is not None), ("reference", reference), ("queue", queue is not None)]
+    names = [f"{name}=" for name, is_given in given if is_given]
+    if len(names) > 1:
+        raise misuse(names[0][:-1], f"{' and '.join(names)} all say what draws", "give one of them")
+
+
 def _points(name: str, array: "ArrayLike") -> "NDArray[np.float64]":
-    try:
-        points = np.asarray(array, np.float64)
-    except (TypeError, ValueError) as error:
-        remedy = "points are numbers, (n, 3)"
-        raise make("unsupported", f"{name}: {error}; {remedy}", name, remedy) from None
+    remedy = f"{name} are numbers, (n, 3), or one point of 3"
+    points = numbers(name, array, np.float64, remedy)
     if points.ndim == 0 or points.shape[-1] != 3:
-        remedy = "points are (n, 3), or one point of 3"
-        raise make("unsupported", f"{name}: an array of shape {list(points.shape)}; {remedy}", name, remedy)
+        raise misuse(name, f"an array of shape {list(points.shape)}", remedy)
     return points
 
 
@@ -275,8 +284,7 @@ def _pairs(names: Tuple[str, str], *arrays: "ArrayLike") -> "List[NDArray[np.flo
         return list(np.broadcast_arrays(*points))
     except ValueError:
         shapes = " and ".join(f"{name} of {list(it.shape)}" for name, it in zip(names, points))
-        remedy = "give as many of both, or one of either"
-        raise make("unsupported", f"{names[1]}: {shapes}; {remedy}", names[1], remedy) from None
+        raise misuse(names[1], shapes, "give as many of both, or one of either") from None
 
 
 _local = threading.local()
@@ -284,6 +292,7 @@ _local = threading.local()
 
 def _kept(device: Any, reference: bool) -> Renderer:
     """Returns this thread's renderer on a device."""
+    _check_choice(device, reference)
     renderers: Dict[Any, Renderer] = _local.__dict__.setdefault("renderers", {})
     key = "reference" if reference else device
     if key not in renderers:

@@ -6,9 +6,11 @@ import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Dict, Optional, Union
+from typing import Any, Dict, List, Optional, Union
 
 from ._energywave import OpenedScene
+from ._errors import ArgumentError, Error, make, mistype, misuse
+from ._given import path as path_of
 from ._tables import SCHEMA, TABLES, Table, keys_of, plain
 
 #: Longest edge of the picture that a notebook shows, pixels.
@@ -45,20 +47,23 @@ class Scene(Table):
             if _is_list(name):
                 vars(self)[name] = []
         for name, value in values.items():
-            setattr(self, name, list(value) if _is_list(name) and value is not None else value)
+            setattr(self, name, value)
         for table in tables:
             self.add(table)
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if name in self._keys and _is_list(name) and value is None:
-            value = []
+        if name in self._keys and _is_list(name):
+            value = _tables(name, value)
         super().__setattr__(name, value)
 
     def add(self, table: Table) -> "Scene":
         """Adds a table, to the others of its kind, or in the place of the one that was there. Returns the scene."""
         name = getattr(table, "_name", None)
         if not isinstance(table, Table) or name not in self._keys:
-            raise TypeError(f"a scene has no table {type(table).__name__}; it has {', '.join(self._keys)}")
+            what = table.__name__ if isinstance(table, type) else type(table).__name__
+            remedy = "give one that was made, such as Torus(...)" if isinstance(table, type) else None
+            remedy = remedy or f"it has {', '.join(self._keys)}"
+            raise mistype("table", f"a scene has no table {what}", remedy)
         if _is_list(name):
             getattr(self, name).append(table)
         else:
@@ -70,8 +75,10 @@ class Scene(Table):
         """Makes a scene of dictionaries, as a JSON file has them; those of keys become tables.
 
         Raises:
-            TypeError: for a key that there is not.
+            ArgumentError: for a key that there is not.
         """
+        if not isinstance(tables, Mapping):
+            raise mistype("tables", f"it is of type {type(tables).__name__}", "give a dictionary of tables")
         scene = cls()
         for key, value in tables.items():
             setattr(scene, key, _table_of(cls._keys.get(key, {}), value))
@@ -82,18 +89,21 @@ class Scene(Table):
         """Reads a scene file, TOML (Python 3.11 or later, or with tomli) or ``.json``, to be changed.
 
         What is only to be drawn needs no such thing: :func:`energywave.render` takes the path.
+
+        Raises:
+            InputError: for a file that cannot be read; NoSuchFileError, which is also a FileNotFoundError, if it is not
+                there.
+            SceneError: for a file that is no scene; its place is file, line and column.
         """
-        path = Path(path)
-        text = path.read_text(encoding="utf-8")
-        if path.suffix.lower() == ".json":
-            tables = json.loads(text)
-        else:
-            try:
-                import tomllib
-            except ImportError:
-                import tomli as tomllib  # type: ignore[no-redef,import-not-found]
-            tables = tomllib.loads(text)
-        scene = cls.from_dict(tables)
+        path = Path(path_of("path", path))
+        try:
+            scene = cls.from_dict(_read(path))
+        except (OSError, ValueError, TypeError) as error:
+            if isinstance(error, Error) and not isinstance(error, ArgumentError):
+                raise
+            OpenedScene.from_file(str(path))  # says where
+            remedy = "check the file"
+            raise make("scene", f"scene: {path}: {error}; {remedy}", str(path), remedy) from error
         object.__setattr__(scene, "_folder", str(path.parent.absolute()))
         return scene
 
@@ -107,6 +117,34 @@ class Scene(Table):
         share = min(1.0, NOTEBOOK_PIXELS / max(width, height))
         size = (max(1, round(width * share)), max(1, round(height * share)))
         return tone_map(render(opened, size=size), opened)._repr_png_()
+
+
+def _read(path: Path) -> Any:
+    """Reads the tables of a file."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix.lower() == ".json":
+        return json.loads(text)
+    try:
+        import tomllib
+    except ImportError:
+        try:
+            import tomli as tomllib  # type: ignore[no-redef,import-not-found]
+        except ImportError:
+            remedy = "install tomli, or give the path to what draws"
+            raise misuse("path", "TOML is read by Python 3.11 or later, or with tomli", remedy) from None
+    return tomllib.loads(text)
+
+
+def _tables(name: str, value: Any) -> List[Any]:
+    """Returns the list of tables that a key of a scene holds."""
+    if value is None:
+        return []
+    if isinstance(value, list):
+        return value
+    if isinstance(value, (Table, Mapping, str, bytes)) or not hasattr(value, "__iter__"):
+        remedy = f"give a list, also of one: scene.{name} = [...], or scene.add(...)"
+        raise mistype(name, f"there may be several, and it is of type {type(value).__name__}", remedy)
+    return list(value)
 
 
 def _table_of(schema: Dict[str, Any], value: Any) -> Any:
@@ -139,10 +177,12 @@ def open_scene(scene: Any, needs_camera: bool = True) -> OpenedScene:
     """
     if isinstance(scene, OpenedScene):
         return scene
-    if isinstance(scene, (str, os.PathLike)):
-        return OpenedScene.from_file(os.fspath(scene))
+    if isinstance(scene, (str, bytes, os.PathLike)):
+        return OpenedScene.from_file(path_of("scene", scene))
     if not isinstance(scene, (Table, Mapping)) or (isinstance(scene, Table) and not isinstance(scene, Scene)):
-        raise TypeError(f"a scene is a path, a dictionary or a Scene, not a {type(scene).__name__}")
+        is_table = isinstance(scene, Table)
+        remedy = "put it into one, Scene(Camera(...), ...)" if is_table else "give a path, a dictionary or a Scene"
+        raise mistype("scene", f"it is of type {type(scene).__name__}", remedy)
     tables: Dict[str, Any] = plain(scene, "")
     if not needs_camera and "camera" not in tables:
         tables["camera"] = {"eye": [0, -4, 0], "target": [0, 0, 0]}

@@ -18,7 +18,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Tuple
 import numpy as np
 
 from . import _energywave
-from ._errors import make
+from ._errors import make, mistype
 
 SCHEMA: Dict[str, Any] = json.loads(_energywave.schema())
 
@@ -30,17 +30,21 @@ class Table:
     _keys: Dict[str, Dict[str, Any]] = {}
     _required: Tuple[str, ...] = ()
 
-    def __init__(self, **values: Any) -> None:
+    def __init__(self, *positional: Any, **values: Any) -> None:
+        kind = type(self).__name__
+        if positional:
+            raise mistype(kind, "its keys have names", f"give {kind}({next(iter(self._keys), 'key')}=...)")
         for name, value in values.items():
             setattr(self, name, value)
         missing = [key for key in self._required if key not in vars(self)]
         if missing:
             needed = " and ".join(f"{key}=" for key in missing)
-            raise TypeError(f"{type(self).__name__}() needs {needed}")
+            raise mistype(f"{kind}()", f"needs {needed}", "give them")
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name not in self._keys:
-            raise self._unknown(name, TypeError)
+            kind = type(self).__name__
+            raise mistype(f"{kind}.{name}", f"{kind} has no key `{name}`", self._hint(name))
         if value is None:
             vars(self).pop(name, None)
         else:
@@ -50,15 +54,14 @@ class Table:
         # Only for what is not set.
         if name in self._keys:
             return copy.deepcopy(self._keys[name].get("default"))
-        raise self._unknown(name, AttributeError)
+        raise AttributeError(f"{type(self).__name__} has no key `{name}`; {self._hint(name)}")
 
     def __delattr__(self, name: str) -> None:
         vars(self).pop(name, None)
 
-    def _unknown(self, name: str, error: type) -> Exception:
+    def _hint(self, name: str) -> str:
         near = difflib.get_close_matches(name, self._keys, n=1)
-        hint = f"did you mean `{near[0]}`?" if near else f"it has {', '.join(self._keys)}"
-        return error(f"{type(self).__name__} has no key `{name}`; {hint}")
+        return f"did you mean `{near[0]}`?" if near else f"it has {', '.join(self._keys)}"
 
     def _set_items(self) -> Iterator[Tuple[str, Any]]:
         values = vars(self)
