@@ -52,7 +52,7 @@ impl Parts for Beam {
 fn ahead_of(tip: DVec3, direction: DVec3, point: DVec3) -> f64 {
     let from_tip = point - tip;
     let ahead = from_tip.dot(direction);
-    let rounding = 1e-13 * (from_tip.abs() + tip.abs()).element_sum();
+    let rounding = 4e-15 * (from_tip.abs() + tip.abs()).element_sum();
     if ahead.abs() < rounding { 0.0 } else { ahead }
 }
 
