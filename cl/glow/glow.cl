@@ -135,6 +135,7 @@ __kernel void draw_particles(const FilmPart part, const GlowView view, __global 
             candidates.count = 0u;
             for (; at < end && candidates.count + LANES <= ROOM; at += LANES)
                 add_candidates(&view, &cone, elements, numbers, at, end, &candidates);
+            fill_last_lanes(&candidates);
             add_light(&part, &view, column, row, elements, &candidates, depths, &gathered);
         }
     }

@@ -110,6 +110,12 @@ INLINE void add_candidates(const GlowView *const view, const Cone *const cone, _
     found->count = count;
 }
 
+// Fills the lanes beside the last candidate: they are looked at with it, and never taken.
+INLINE void fill_last_lanes(Candidates *const found) {
+    for (uint k = found->count; k % LANES != 0u; ++k)
+        found->x[k] = found->y[k] = found->z[k] = found->radius[k] = 0.0f;
+}
+
 // Lists the candidates near the rays of a block. Returns how many those are.
 INLINE uint near_block(const GlowView *const view, const Cone *const cone, const Candidates *const candidates,
                        ushort *const list) {
