@@ -59,7 +59,11 @@ fn verify_prints_a_row_for_every_ray_and_fails_on_a_wrong_one() {
     rays[2]["start"] = serde_json::json!([1e30, 0.0, 0.0]);
     std::fs::write(&file, serde_json::to_string(&rays).unwrap()).unwrap();
     let far = folder.run(&["verify", "--rays", "rays.json"]);
-    expect(&far, 3, "rays.json: ray 2: start: x is 1e30; float32 devices can integrate to 1e9");
+    expect(
+        &far,
+        3,
+        "rays.json: ray 2: start: x is 1e30; float32 devices can integrate to 1e9",
+    );
     std::fs::write(&file, "[]").unwrap();
     expect(
         &folder.run(&["verify", "--rays", "rays.json"]),
