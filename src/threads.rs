@@ -18,7 +18,7 @@ pub(crate) fn for_each_chunk<T: Send>(
         .for_each(|(index, chunk)| work(index, chunk));
 }
 
-/// So many values a thread takes at once from [`map`] and [`greatest`], whose work is small.
+/// So many values a thread takes at once from [`map`], [`greatest`] and [`find_first`], whose work is small.
 #[cfg(feature = "threads")]
 const PART: usize = 4096;
 
@@ -64,6 +64,22 @@ pub(crate) fn find_any<T: Send>(
     return numbers.par_iter().find_map_any(|number| find(*number));
     #[cfg(not(feature = "threads"))]
     return numbers.iter().find_map(|number| find(*number));
+}
+
+/// Returns what `find` finds for the first value for which it finds something, given with its place.
+pub(crate) fn find_first<T: Sync, U: Send>(
+    values: &[T],
+    find: impl Fn(usize, &T) -> Option<U> + Send + Sync,
+) -> Option<U> {
+    #[cfg(feature = "threads")]
+    let places = values.par_iter().with_min_len(PART).enumerate();
+    #[cfg(feature = "threads")]
+    return places.find_map_first(|(place, value)| find(place, value));
+    #[cfg(not(feature = "threads"))]
+    return values
+        .iter()
+        .enumerate()
+        .find_map(|(place, value)| find(place, value));
 }
 
 /// Returns how many threads work.

@@ -48,10 +48,9 @@ impl Renderer {
         progress: &mut Progress<'_>,
     ) -> Result<Vec<[f64; 3]>> {
         self.check(scene)?;
-        for (index, ray) in rays.iter().enumerate() {
-            if let Some(fault) = ray.fault() {
-                return Err(SceneError::value(format!("ray {index}"), fault).into());
-            }
+        if let Some((index, fault)) = threads::find_first(rays, |at, ray| Some((at, ray.fault()?)))
+        {
+            return Err(SceneError::value(format!("ray {index}"), fault).into());
         }
         if scene.has_points() {
             return self.integrate(&scene.with_points_apart(), rays);
