@@ -14,9 +14,13 @@ fn folder() -> PathBuf {
 
 /// Returns how far a scene is off when its kernels are built with these options, and whether it meets its tolerance.
 fn drawn(path: &Path, options: &str) -> (String, bool) {
+    drawn_on(path, device().lanes, options)
+}
+
+fn drawn_on(path: &Path, lanes: u32, options: &str) -> (String, bool) {
     let mut scene = Scene::from_file(path).unwrap();
     scene.integration.antialias = Antialias::None;
-    let image = renderer(device().lanes, options).render(&scene).unwrap();
+    let image = renderer(lanes, options).render(&scene).unwrap();
     let found = difference(&image, &reference::render(&scene).unwrap());
     let is_met = meets(&found, tolerance(&scene));
     (format!("{}: {found:?}", path.display()), is_met)
@@ -32,6 +36,23 @@ fn built_scenes_meet_their_tolerance() {
         let (found, is_met) = drawn(&path, "");
         assert!(is_met, "{found}");
     }
+}
+
+/// Neighbours that cut their panels do not help a ray that is alone.
+#[test]
+fn weighted_curves_do_so_ray_by_ray() {
+    let scene = |name: &str| folder().join(name).with_extension("toml");
+    for name in [
+        "weighted-smooth-pixels",
+        "weighted-dark-end",
+        "five-dark-weights",
+    ] {
+        let (found, is_met) = drawn_on(&scene(name), 1, "");
+        assert!(is_met, "{found}");
+    }
+    let blind = "-DSEEN_END=2.0f";
+    let (found, is_met) = drawn_on(&scene("weighted-smooth-pixels"), 1, blind);
+    assert!(!is_met, "{found}");
 }
 
 #[test]

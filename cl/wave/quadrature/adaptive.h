@@ -1,32 +1,19 @@
 // The integral of the field of a KIND times the decay, to a relative error: Gauss-Legendre quadrature on mapped panels
 // (panel.h). Two null rules on the same nodes, the highest Legendre coefficients that they see, tell how well a panel
-// is resolved; one that is not is cut in two, in all lanes. A kind without closed form includes this
-// file at the end of its own header, where it has defined KIND: that makes its KIND_integral, torus_integral for
-// instance.
+// is resolved; one that is not is cut in two. A kind without closed form includes this file at the end of its own
+// header, where it has defined KIND: that makes its KIND_integral, torus_integral for instance.
 //
 // The host gives the positive nodes of the rule, the outermost first, their weights and those of the null rules as
 // GAUSS_..., and as `threshold` how large the coefficients may be, of the integral.
 
-// Cuts of a ray's panels in all, panels that may be open at once, by which factor errors may grow with every cut of the
-// second half, how much worse than its nodes tell a panel with kinks may be, and the share of the first estimate
-// that errors may be measured by.
+// Cuts of a ray's panels in all, by which factor errors may grow with every cut of the second half, how much worse than
+// its nodes tell a panel with kinks may be, and the share of the first estimate that errors may be measured by.
 #ifndef MOST_CUTS
 #define MOST_CUTS 64
 #endif
-#define MOST_PANELS 24
 #define PATIENCE 1.25f
 #define DOUBT 30.0f
 #define FIRST_ESTIMATE 0.25f
-
-// Newton steps to where light ends, how fast a ray must come closer to it, of its length, to take one, and which share
-// of the panel the last one goes: the next would go its square.
-#ifndef EDGE_STEPS
-#define EDGE_STEPS 8
-#endif
-#ifndef LAST_EDGE_STEP
-#define LAST_EDGE_STEP 1e-4f
-#endif
-#define LEAST_CLOSING 0.02f
 
 // Pairs of nodes whose fields are taken side by side: all for vectors, whose lanes do not hide what an operation waits
 // for; one where work-items do that and registers are few.
@@ -133,46 +120,53 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
 #if KIND_HAS(two_panels)
 #if LANES > 1
 // Opens the halves of a panel in place of it, and returns which lanes have them; others are done with it.
-INLINE intv KIND_halve(const PanelSum *const sum, const floatv from, const floatv to, const intv has_panel,
-                       floatv *const all_from, floatv *const all_to) {
+INLINE intv KIND_halve(OpenPanels *const open, const PanelSum *const sum, const floatv from, const floatv to,
+                       const intv is_rough) {
     const floatv cut = sum->middle;
-    const intv is_cut = (cut > from) & (cut < to) & has_panel;
-    all_from[0] = select(from, cut, is_cut), all_to[0] = select(from, to, is_cut);
-    all_from[1] = from, all_to[1] = select(from, cut, is_cut);
+    const intv is_cut = (cut > from) & (cut < to) & is_rough;
+    open_panel(open, cut, to, is_cut);
+    open_panel(open, from, cut, is_cut);
     return is_cut;
 }
 #endif
 
-// Integrates the two panels on both sides of a cut at once, so that one works while the other waits. Returns how many
-// panels are open then, in the place of the two: of vectors the halves of each that a lane has not resolved.
-// `integral` gets what is done, `estimate` everything.
-INLINE uint KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold,
-                            floatv *const all_from, floatv *const all_to, floatv *const integral,
-                            floatv *const estimate, intv *const own_cuts) {
-    const floatv begin = peaks->begin, cut = all_to[1], end = peaks->end;
+// Integrates two panels, the later one being number 0, at once, so that one works while the other waits. Opens them
+// again, of vectors the halves of each that a lane has not resolved, and returns what is done; `estimate` is
+// everything.
+INLINE floatv KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold,
+                              const floatv *const from, const floatv *const to, OpenPanels *const open,
+                              floatv *const estimate, intv *const own_cuts, uint *const nodes) {
 #if LANES == 1
     // One after the other, from one copy of the code: other work-items work while one waits.
     floatv unresolved = 0.0f;
     *estimate = 0.0f;
 #pragma unroll 1
-    for (int k = 0; k < 2; ++k) {
-        const floatv from = k == 0 ? begin : cut, to = k == 0 ? cut : end;
-        if (is_empty_panel(decay, from, to))
+    for (int k = 1; k >= 0; --k) {
+        if (is_empty_panel(decay, from[k], to[k]))
             continue;
-        KIND_panel panel = KIND_open_panel(peaks, decay, from, to);
+        KIND_panel panel = KIND_open_panel(peaks, decay, from[k], to[k]);
         const PanelSum sum = KIND_sum_panel(peaks, decay, &panel);
+        *nodes += 2 * GAUSS_PAIRS;
         *estimate += sum.integral;
         unresolved = max(unresolved, sum.unresolved);
     }
-    if (is_beyond(unresolved, threshold * *estimate))
-        return 2;
-    *integral = *estimate;
-    return 0;
+    if (!is_beyond(unresolved, threshold * *estimate))
+        return *estimate;
+    for (int k = 0; k < 2; ++k)
+        open_panel(open, from[k], to[k], !is_empty_panel(decay, from[k], to[k]));
+    return 0.0f;
 #else
-    const intv has_first = !is_empty_panel(decay, begin, cut), has_second = !is_empty_panel(decay, cut, end);
-    const floatv first_end = select(begin + 1.0f, cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
-    const floatv second_end = select(splat(1.0f), end, has_second);
-    KIND_panel first = KIND_open_panel(peaks, decay, begin, first_end);
+    const intv has_first = !is_empty_panel(decay, from[1], to[1]), has_second = !is_empty_panel(decay, from[0], to[0]);
+    if (!any_lane(has_first) || !any_lane(has_second)) { // there is but one
+        open_panel(open, from[0], to[0], has_second);
+        open_panel(open, from[1], to[1], has_first);
+        return splat(0.0f);
+    }
+    *nodes += 4 * GAUSS_PAIRS;
+    const floatv first_end = select(from[1] + 1.0f, to[1], has_first);
+    const floatv second_begin = select(splat(0.0f), from[0], has_second);
+    const floatv second_end = select(splat(1.0f), to[0], has_second);
+    KIND_panel first = KIND_open_panel(peaks, decay, from[1], first_end);
     KIND_panel second = KIND_open_panel(peaks, decay, second_begin, second_end);
     const PanelSum of_first = KIND_sum_panel(peaks, decay, &first);
     const PanelSum of_second = KIND_sum_panel(peaks, decay, &second);
@@ -180,71 +174,55 @@ INLINE uint KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, co
     const floatv second_part = select(splat(0.0f), of_second.integral, has_second);
     *estimate = first_part + second_part;
     const floatv allowed = threshold * *estimate;
-    const intv first_is_rough = is_beyond(of_first.unresolved, allowed) & has_first;
-    const intv second_is_rough = is_beyond(of_second.unresolved, allowed) & has_second;
-    intv has_halves = (intv)(0);
-    uint open = 0;
-    if (MOST_CUTS > 0 && any_lane(second_is_rough)) {
-        has_halves = KIND_halve(&of_second, cut, end, has_second, all_from, all_to);
-        open = 2;
-    }
-    *integral = select(second_part, splat(0.0f), has_halves);
-    has_halves = (intv)(0);
-    if (MOST_CUTS > 0 && any_lane(first_is_rough)) {
-        has_halves = KIND_halve(&of_first, begin, cut, has_first, all_from + open, all_to + open);
-        open += 2;
-    }
-    *integral += select(first_part, splat(0.0f), has_halves);
-    *own_cuts += select((intv)(0), (intv)(1), first_is_rough) + select((intv)(0), (intv)(1), second_is_rough);
-    return open;
+    const intv may_cut = (intv)(MOST_CUTS > 0 ? -1 : 0);
+    const intv first_is_rough = is_beyond(of_first.unresolved, allowed) & has_first & may_cut;
+    const intv second_is_rough = is_beyond(of_second.unresolved, allowed) & has_second & may_cut;
+    const intv second_is_cut = KIND_halve(open, &of_second, from[0], to[0], second_is_rough);
+    const intv first_is_cut = KIND_halve(open, &of_first, from[1], to[1], first_is_rough);
+    *own_cuts -= first_is_rough + second_is_rough; // true is -1
+    return select(second_part, splat(0.0f), second_is_cut) + select(first_part, splat(0.0f), first_is_cut);
 #endif
 }
 #endif
 
 #if defined(SHAPES) && KIND_HAS(peaks_along)
-// Returns where light begins, or, seen from the other end of a panel (`turn` -1), where it ends: by steps to where the
-// squared distance to the core, as a parabola, comes to that of the edge, or by Newton's where it does not. One that
-// goes where the ray draws away from the core may have passed over what is lit: in its place comes a step as long as
-// the distance to the light.
-INLINE floatv KIND_edge(const KIND_peaks *const peaks, const floatv from, const floatv to, const float turn) {
-    const floatv length = 2.0f * peaks->ray->length, per_length = inverse(length);
-    const floatv last_step = LAST_EDGE_STEP * (to - from);
-    const float end2 = peaks->path.profile.end2, end = sqrt(end2);
-    floatv s = turn > 0.0f ? from : to, safe = s, edge = s;
-#pragma unroll 1
-    for (int step = 0; step < EDGE_STEPS; ++step) {
-        floatv slope, half_curvature;
-        const floatv distance2 = max(KIND_edge_distance2(peaks, s, &slope, &half_curvature), 1e-30f);
-        const floatv distance = 0.5f * twice_sqrt(distance2), left2 = distance2 - end2;
-        const floatv closing = -0.5f * turn * slope;
-        const intv is_closing = closing > LEAST_CLOSING * length * distance;
-        const intv is_there = is_closing | (s == safe);
-        const floatv bend = fma(-half_curvature, left2, closing * closing);
-        const floatv root = 0.5f * twice_sqrt(max(bend, 1e-36f));
-        floatv ahead = (distance - end) * distance * inverse(max(closing, 1e-30f));
-        ahead = select(ahead, left2 * inverse(max(closing + root, 1e-30f)), bend > 0.0f);
-        const floatv short_step = fma(turn * max(distance - end, 0.0f), per_length, s);
-        const floatv there = fma(splat(turn), ahead, s);
-        edge = select(edge, select(there, s, left2 > 0.0f), is_there);
-        safe = clamp(select(safe, short_step, is_there), from, to);
-        const floatv next = clamp(select(safe, there, is_closing), from, to);
-        const intv is_moving = fabs(next - s) > last_step;
-        s = next;
-        if (!any_lane(is_moving))
-            break;
-    }
-    return clamp(edge, from, to);
-}
-
-// Trims panels to where there is light.
+// Trims panels to where there is light: from both ends at once, so that one search works while the other waits.
 INLINE void KIND_trim(const KIND_peaks *const peaks, const uint count, floatv *const from, floatv *const to) {
+    const floatv length = 2.0f * peaks->ray->length;
+    const float end2 = peaks->path.profile.end2;
     for (uint k = 0; k < count; ++k) {
-        if (!any_lane(to[k] > from[k]))
+        const floatv first = from[k], last = to[k];
+        if (!any_lane(last > first))
             continue;
-        const floatv begin = KIND_edge(peaks, from[k], to[k], 1.0f);
-        to[k] = max(begin, KIND_edge(peaks, begin, to[k], -1.0f));
-        from[k] = begin;
+        EdgeSearch begin = edge_search_from(first, 1.0f), end = edge_search_from(last, -1.0f);
+        intv is_moving = (intv)(-1);
+#pragma unroll 1
+        for (int step = 0; step < EDGE_STEPS && any_lane(is_moving); ++step) {
+            const EdgeView at_begin = KIND_edge_view(peaks, begin.s), at_end = KIND_edge_view(peaks, end.s);
+            is_moving = step_to_edge(&begin, &at_begin, length, end2, first, last) |
+                        step_to_edge(&end, &at_end, length, end2, first, last);
+        }
+        from[k] = clamp(begin.edge, first, last);
+        to[k] = max(from[k], clamp(end.edge, first, last));
     }
+}
+#endif
+
+#if KIND_HAS(dark_parts)
+// Returns what the panels add up to by their nodes as they are.
+INLINE floatv KIND_survey(const KIND_peaks *const peaks, const Decay decay, const uint count, const floatv *const from,
+                          const floatv *const to, uint *const nodes) {
+    floatv sum = splat(0.0f);
+    for (uint k = count; k > 0; --k) {
+        const intv is_empty = is_empty_panel(decay, from[k - 1], to[k - 1]);
+        if (!any_lane(!is_empty))
+            continue;
+        KIND_panel opened = KIND_open_panel(peaks, decay, from[k - 1], select(to[k - 1], splat(1.0f), is_empty));
+        const PanelSum panel = KIND_sum_panel(peaks, decay, &opened);
+        *nodes += 2 * GAUSS_PAIRS;
+        sum += select(panel.integral, splat(0.0f), is_empty);
+    }
+    return sum;
 }
 #endif
 
@@ -260,89 +238,72 @@ INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadratu
     peaks.end = min(peaks.end, darkness(decay));
     peaks.begin = min(peaks.begin, peaks.end);
 #endif
-    floatv all_from[MOST_PANELS], all_to[MOST_PANELS], integral;
-    uint open = KIND_panels(&peaks, quadrature, all_from, all_to, &integral);
+    floatv first_from[FIRST_PANELS], first_to[FIRST_PANELS], integral;
+    const uint count = KIND_panels(&peaks, quadrature, first_from, first_to, &integral);
 #if defined(SHAPES) && KIND_HAS(peaks_along)
-    const bool has_end = HAS_END(&peaks.path.profile);
-    if (has_end) {
-        KIND_trim(&peaks, open, all_from, all_to);
+    if (HAS_END(&peaks.path.profile)) {
+        KIND_trim(&peaks, count, first_from, first_to);
         threshold = quadrature->kinked_threshold;
     }
-#else
-    const bool has_end = false;
 #endif
     // Of every lane: what one cannot resolve is not to spoil its neighbours.
-    floatv patience = splat(threshold);
+    floatv patience = splat(threshold), estimate = integral;
     intv own_cuts = (intv)(0);
 #if KIND_HAS(more_cuts)
-    const uint most_cuts = MOST_CUTS + KIND_more_cuts(&peaks);
+    const intv most_cuts = (intv)((int)(MOST_CUTS + KIND_more_cuts(&peaks)));
 #else
-    const uint most_cuts = MOST_CUTS;
+    const intv most_cuts = (intv)(MOST_CUTS);
 #endif
+    OpenPanels open;
+    open_none(&open);
     uint nodes = 0;
-    bool has_cut = false;
-    floatv estimate = integral;
 #if KIND_HAS(two_panels)
-    if (!has_end) {
-        nodes += 4 * GAUSS_PAIRS;
-        open = KIND_two_panels(&peaks, decay, threshold, all_from, all_to, &integral, &estimate, &own_cuts);
-    }
-#endif
-    const uint all = open;
-#if KIND_HAS(dark_parts)
-    bool is_survey = KIND_is_uneven(&peaks);
+    integral += KIND_two_panels(&peaks, decay, threshold, first_from, first_to, &open, &estimate, &own_cuts, &nodes);
 #else
-    bool is_survey = false;
+    for (uint k = 0; k < count; ++k)
+        open_panel(&open, first_from[k], first_to[k], !is_empty_panel(decay, first_from[k], first_to[k]));
 #endif
-    while (open > 0 || is_survey) {
-        if (open == 0) {
-            is_survey = false, open = all;
-            continue;
-        }
-        --open;
-        const floatv from = all_from[open];
-        const intv is_empty = is_empty_panel(decay, from, all_to[open]);
-        if (!any_lane(!is_empty))
-            continue;
-        const floatv to = select(all_to[open], splat(1.0f), is_empty);
-        floatv value = splat(0.0f);
+#if KIND_HAS(dark_parts)
+    if (KIND_is_uneven(&peaks))
+        estimate += KIND_survey(&peaks, decay, count, first_from, first_to, &nodes);
+#endif
+    floatv from = splat(0.0f), to = splat(1.0f);
+    intv is_open = next_panel(&open, (intv)(-1), &from, &to);
+    while (any_lane(is_open)) {
+        const intv is_empty = !is_open | is_empty_panel(decay, from, to);
+        floatv value = splat(0.0f), cut = from;
         intv is_done = is_empty;
 #if KIND_HAS(closed_ends)
-        if (has_cut)
-            is_done |= KIND_closed(&peaks, quadrature, from, to, &value);
+        const intv may_be_closed = (own_cuts > 0) & !is_empty;
+        if (any_lane(may_be_closed))
+            is_done |= may_be_closed & KIND_closed(&peaks, quadrature, from, to, &value);
+        value = select(splat(0.0f), value, is_done);
 #endif
+        intv is_cut = (intv)(0);
         if (any_lane(!is_done)) {
-            KIND_panel opened = KIND_open_panel(&peaks, decay, from, to);
+            KIND_panel opened = KIND_open_panel(&peaks, decay, from, select(to, splat(1.0f), is_empty));
             const PanelSum panel = KIND_sum_panel(&peaks, decay, &opened);
             nodes += 2 * GAUSS_PAIRS;
             value = select(panel.integral, value, is_done);
-            if (is_survey) {
-                estimate += select(value, splat(0.0f), is_empty);
-                continue;
-            }
             const floatv allowed = patience * max(fabs(integral + value), FIRST_ESTIMATE * fabs(estimate));
             const intv is_rough = (is_beyond(panel.unresolved, allowed) | (panel.unseen > allowed)) & !is_done &
-                                  (own_cuts < (intv)((int)most_cuts));
-            if (open + 2 <= MOST_PANELS && any_lane(is_rough)) {
+                                  (own_cuts < most_cuts) & (open.count + 2 <= MOST_PANELS);
+            if (any_lane(is_rough)) {
                 // What is as short as float32 can tell stays whole.
-                const intv is_cut = (panel.middle > from) & (panel.middle < to) & !is_done;
+                is_cut = (panel.middle > from) & (panel.middle < to) & is_rough;
 #if KIND_HAS(jumps)
-                const floatv cut = KIND_split(&peaks, from, to, panel.middle);
+                cut = KIND_split(&peaks, from, to, panel.middle);
 #else
-                const floatv cut = panel.middle;
+                cut = panel.middle;
 #endif
-                // Lanes that are done with the panel, or have it whole, find both halves empty.
-                integral += select(value, splat(0.0f), is_empty | is_cut);
-                all_from[open] = select(from, cut, is_cut), all_to[open] = select(from, to, is_cut);
-                all_from[open + 1] = from, all_to[open + 1] = select(from, cut, is_cut);
-                open += 2;
-                has_cut = true;
                 own_cuts += select((intv)(0), (intv)(1), is_rough);
-                patience = select(patience, PATIENCE * patience, is_rough & (own_cuts > (intv)((int)most_cuts / 2)));
-                continue;
+                patience = select(patience, PATIENCE * patience, is_rough & (own_cuts > most_cuts / 2));
             }
         }
-        integral += select(value, splat(0.0f), is_empty);
+        integral += select(value, splat(0.0f), is_empty | is_cut);
+        open_panel(&open, cut, to, is_cut);
+        to = select(to, cut, is_cut);
+        is_open = is_cut | next_panel(&open, !is_cut, &from, &to);
     }
 #ifdef COUNT_NODES
     atomic_add(quadrature->counts + COUNT_NODES_TAKEN, nodes * LANES);

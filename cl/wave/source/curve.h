@@ -20,7 +20,7 @@ typedef struct Curve {
     float velocity_across;
     float bend;        // |C2|
     float vertex;      // x of the parabola's vertex, negated
-    uint is_straight;  // 1: so straight that the cubic for the nearest point degenerates
+    uint is_straight;  // 1: so straight that the cubic for the nearest point degenerates; 2: a line, run through evenly
     uint spline_begin; // row of the first of its pieces
     uint spline_count; // pieces of its local-intensity series; 0: intensity 1
     uint padding;

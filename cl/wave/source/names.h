@@ -22,7 +22,7 @@
 #define KIND_near JOIN(KIND, _near)
 #define KIND_approach JOIN(KIND, _approach)
 #define KIND_near_field JOIN(KIND, _near_field)
-#define KIND_edge_distance2 JOIN(KIND, _edge_distance2) // -D SHAPES
+#define KIND_edge_view JOIN(KIND, _edge_view) // -D SHAPES
 
 // What it has in addition, if it says so.
 #define KIND_look_ahead JOIN(KIND, _look_ahead) // KIND_HAS(look_ahead)
@@ -41,13 +41,13 @@
 #define KIND_emission JOIN(KIND, _emission)     // ../radiance.h
 #define KIND_simpson JOIN(KIND, _simpson)       // ../quadrature/simpson.h
 #define KIND_add_to_row JOIN(KIND, _add_to_row) // ../cells.h
-#define KIND_edge JOIN(KIND, _edge)
 #define KIND_trim JOIN(KIND, _trim)
 #define KIND_panel JOIN(KIND, _panel) // ../quadrature/adaptive.h, with what follows
 #define KIND_open_panel JOIN(KIND, _open_panel)
 #define KIND_sum_panel JOIN(KIND, _sum_panel)
 #define KIND_halve JOIN(KIND, _halve)
 #define KIND_two_panels JOIN(KIND, _two_panels)
+#define KIND_survey JOIN(KIND, _survey)
 #define KIND_at_end JOIN(KIND, _at_end) // ../tiles/settle.h
 #define KIND_settle JOIN(KIND, _settle)
 #define KIND_through JOIN(KIND, _through) // ../footprint/seen.h

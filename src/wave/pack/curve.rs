@@ -11,6 +11,9 @@ use crate::scene::Light;
 /// far-off vertex, while the kernels' foot on the tangent needs two Newton steps.
 const STRAIGHT: f64 = 1e-3;
 
+/// Below this one it is a line that is run through evenly, but for the rounding of float64.
+const LINE: f64 = 1e-13;
+
 /// So does one whose bend is below this share of the distances to it: the cubic's coefficients would overflow.
 const TINY: f64 = 1e-12;
 
@@ -72,9 +75,12 @@ impl Pack for scene::Curve {
 
 /// Packs where a curve is.
 fn shape(anchor: &Anchor, [b0, b1, b2]: [DVec3; 3]) -> Curve {
-    let c2 = b0 - 2.0 * b1 + b2;
-    let middle = 0.25 * b0 + 0.5 * b1 + 0.25 * b2;
     let velocity = b2 - b0; // C'(1/2)
+    let bent = b0 - 2.0 * b1 + b2;
+    let rounding = LINE * (b0.length() + b1.length() + b2.length());
+    let is_line = bent.length() <= rounding && velocity.length() > 0.0;
+    let c2 = if is_line { DVec3::ZERO } else { bent };
+    let middle = 0.25 * b0 + 0.5 * b1 + 0.25 * b2;
     let bend = c2.length();
     let far = TINY * (anchor.reach + middle.distance(anchor.origin));
     let is_straight = bend <= STRAIGHT * velocity.length() || bend < far;
@@ -111,7 +117,7 @@ fn shape(anchor: &Anchor, [b0, b1, b2]: [DVec3; 3]) -> Curve {
         } else {
             (0.5 * velocity_across / bend) as f32
         },
-        is_straight: u32::from(is_straight),
+        is_straight: u32::from(is_straight) + u32::from(is_line),
         ..Zeroable::zeroed()
     }
 }

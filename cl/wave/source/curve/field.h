@@ -29,7 +29,7 @@ typedef struct {
     Linear p, h;                  // of the cubic u^3 + 3 p u + 2 h = 0 for u = t - 1/2 + vertex
     float velocity_along, velocity_across, bend, vertex;
     float inverse_speed2; // 1 / |C'(1/2)|^2, 0 for a point
-    uint is_straight, spline_count;
+    uint is_straight, is_line, spline_count;
     __global const float4 *pieces;
     Profile profile;
 } curve_path;
@@ -46,7 +46,7 @@ INLINE curve_path curve_along(const Ray *const ray, const Sources *const sources
     path.velocity_across = 2.0f * curve->velocity_across;
     path.bend = 2.0f * curve->bend;
     path.vertex = curve->vertex;
-    path.is_straight = curve->is_straight;
+    path.is_straight = curve->is_straight > 0u, path.is_line = curve->is_straight == 2u;
     path.spline_count = curve->spline_count;
     path.pieces = sources->rows + curve->spline_begin;
     path.profile = profile_of(ray, &curve->falloff);
@@ -101,6 +101,14 @@ floatv curve_velocity_across(const curve_path *const path, const floatv x) {
     return fma(splat(2.0f * path->bend), x, splat(path->velocity_across));
 }
 
+// Finds the nearest point of a curve that is a line, run through evenly: the foot of the perpendicular, or an end.
+INLINE floatv nearest_on_line(const curve_path *const path, const curve_point *const point, floatv *const distance2) {
+    const floatv foot = fma(point->along, path->velocity_along * path->inverse_speed2, point->core);
+    const floatv x = clamp(foot, -0.5f, 0.5f), beyond = path->velocity_along * (foot - x);
+    *distance2 = fma(beyond, beyond, fma(point->across, point->across, point->normal * point->normal));
+    return x;
+}
+
 // Finds the nearest point of a curve that is all but straight: the foot on the tangent at the core point, corrected for
 // the bend by Newton steps; or an end, where the curve turns away.
 floatv nearest_on_straight(const curve_path *const path, const curve_point *const point, floatv *const distance2) {
@@ -141,6 +149,8 @@ INLINE RootCounts roots_at(const curve_point *const point) {
 // the outer ones, clamped to the curve, stand for its ends too. Of two equally near points the one with less t wins.
 INLINE floatv nearest_of_roots(const curve_path *const path, const curve_point *const point, const RootCounts counts,
                                floatv *const distance2) {
+    if (path->is_line)
+        return nearest_on_line(path, point, distance2);
     if (path->is_straight)
         return nearest_on_straight(path, point, distance2);
     const floatv p = point->p, h = point->h;

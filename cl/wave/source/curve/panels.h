@@ -226,10 +226,11 @@ curve_sight select_sight(const curve_sight a, const curve_sight b, const intv is
     return sight;
 }
 
-// What the nodes of one side of a panel see, from its end inwards: x of the nearest points.
+// What the nodes of one side of a panel see, from its end inwards: x of the nearest points; the end and the outermost
+// node are where x leaves an end of the curve, if it does.
 typedef struct {
     floatv end, outermost, last;
-    intv jumps; // whether x changes more than smoothly beyond the outermost node
+    intv jumps; // whether x changes more than smoothly beyond the outermost node, or leaves an end of the curve
 } curve_side;
 
 typedef struct {
@@ -271,14 +272,22 @@ INLINE curve_view curve_view_from(const curve_peaks *const peaks, const floatv f
     return view;
 }
 
+#ifndef SEEN_END // a test is blind to it
+#define SEEN_END 0.5f
+#endif
+
 // Takes note of what a side's node sees, the outermost being number 0.
 INLINE void curve_see(curve_view *const view, curve_side *const side, const curve_node_sight sight, const floatv weight,
                       const int number) {
     const floatv leap = fabs(sight.x - side->last);
+    const intv leaves_end = (fabs(side->last) >= SEEN_END) & (fabs(sight.x) < SEEN_END);
     if (number == 0)
         side->outermost = sight.x;
     if (number == 1)
-        side->jumps = fabs(side->end - side->outermost) > SMOOTH_LEAP * leap;
+        side->jumps |= fabs(side->end - side->outermost) > SMOOTH_LEAP * leap;
+    side->end = select(side->end, side->last, leaves_end);
+    side->outermost = select(side->outermost, sight.x, leaves_end);
+    side->jumps |= leaves_end;
     view->leap = max(view->leap, leap);
     view->plain = fma(weight, sight.plain, view->plain);
     side->last = sight.x;

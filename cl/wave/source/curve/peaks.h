@@ -111,19 +111,26 @@ CALL_IF_SCALAR curve_peaks curve_peaks_along(const Ray *const ray, const Sources
 }
 
 #ifdef SHAPES
-// Returns the squared distance at s, without softening, its slope there, and half of its curvature, or more: as if the
-// nearest point stayed where it is.
-INLINE floatv curve_edge_distance2(const curve_peaks *const peaks, const floatv s, floatv *const slope,
-                                   floatv *const half_curvature) {
+// A curve that is bent towards the ray lets its nearest point slide faster, by so much at most.
+#define MOST_SLIDING 10.0f
+
+// Returns the squared distance at s, without softening, its slope there, and half of its curvature: of the way to the
+// nearest point, which slides along the curve unless it is an end.
+INLINE EdgeView curve_edge_view(const curve_peaks *const peaks, const floatv s) {
     const curve_path *const path = &peaks->path;
     const curve_point point = curve_point_at(path, s);
-    floatv distance2;
-    const floatv x = nearest_on_curve(path, &point, &distance2);
+    EdgeView view;
+    const floatv x = nearest_on_curve(path, &point, &view.distance2);
     const curve_offset offset = offset_from_curve(path, &point, x);
-    *slope = 2.0f * fma(offset.along, path->along.slope,
-                        fma(offset.across, path->across.slope, point.normal * path->normal.slope));
-    *half_curvature = peaks->span2;
-    return distance2;
+    view.slope = 2.0f * fma(offset.along, path->along.slope,
+                            fma(offset.across, path->across.slope, point.normal * path->normal.slope));
+    const floatv velocity_across = curve_velocity_across(path, x);
+    const floatv climb = fma(path->along.slope, splat(path->velocity_along), path->across.slope * velocity_across);
+    const floatv speed2 = fma(velocity_across, velocity_across, splat(path->velocity_along * path->velocity_along));
+    const floatv facing = fma(-2.0f * path->bend, offset.across, speed2);
+    const floatv slid = climb * climb * inverse(max(max(facing, speed2 * (1.0f / MOST_SLIDING)), 1e-30f));
+    view.half_curvature = select(peaks->span2, max(peaks->span2 - slid, 0.0f), fabs(x) < 0.5f);
+    return view;
 }
 #endif
 
@@ -257,7 +264,7 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
         is_thin &= !is_cut;
         peak->is_flat |= is_cut & (peak->re * peak->re * curvature < 1.1f * path->profile.floor2);
     }
-    curve_near near = {*path, x, needs_polish(path, lowest), {true, true}, {x, splat(0.0f)}};
+    curve_near near = {*path, x, !path->is_line && needs_polish(path, lowest), {true, true}, {x, splat(0.0f)}};
     near.path.profile.softening2 +=
         select(splat(0.0f), floored(lowest, path->profile.floor2, IS_SQUARE(&path->profile)) - lowest, is_thin);
     near.path.profile.floor2 = select(path->profile.floor2, 0.5f * path->profile.floor2, is_thin);
@@ -275,6 +282,8 @@ INLINE curve_near curve_approach(const curve_peaks *const peaks, const floatv fr
 // Finds which numbers of roots occur at any node, so that no node has to ask.
 INLINE void curve_look_ahead(curve_near *const near, const floatv *const left, const floatv *const right,
                              const uint count) {
+    if (near->path.is_straight)
+        return;
     intv has_three = left[0] != left[0], has_one = has_three;
     for (uint k = 0; k < count; ++k) {
         const Linear p = near->path.p, h = near->path.h;
