@@ -76,8 +76,8 @@ typedef struct {
     bool is_full;
     uint begin[LISTED_SLABS + 1u]; // of each slab's
     uint number[LISTED];
-    float x[LISTED], y[LISTED], z[LISTED];
-    float radius[LISTED];
+    float x[LISTED + LANES], y[LISTED + LANES], z[LISTED + LANES]; // lanes are read beyond the last
+    float radius[LISTED + LANES];
 } Listed;
 
 // A rectangle of rays, and what it looks for particles in; of a block there is a ray in every lane.
@@ -176,6 +176,9 @@ INLINE void list_slab(const Search *const unit, Listed *const listed) {
             }
         }
     }
+    // Lanes beside the last are looked at with it, and never taken.
+    scatter(splat(0.0f), listed->x + count), scatter(splat(0.0f), listed->y + count);
+    scatter(splat(0.0f), listed->z + count), scatter(splat(0.0f), listed->radius + count);
     ++listed->last;
     listed->begin[number + 1u] = count;
     listed->is_full = number + 1u == LISTED_SLABS;
