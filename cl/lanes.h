@@ -75,12 +75,21 @@ typedef JOIN(uint, LANES) uintv;
 // The same value in every lane.
 #define splat(value) ((floatv)(value))
 
+// x86 processors of 512 bits have comparisons in masks; clang offers them in OpenCL C too.
+#if LANES == 16 && !defined(NO_SHUFFLES) && defined(__AVX512DQ__) && defined(__has_builtin)
+#if __has_builtin(__builtin_ia32_cvtd2mask512)
+#define mask_of_lanes(condition) ((uint)(ushort)__builtin_ia32_cvtd2mask512((condition) != 0))
+#endif
+#endif
+
 // Returns whether a comparison holds in any lane. Halves are joined until two words are left: any() takes the lanes one
 // by one on PoCL 3.1, which costs a curve 7 % of its time. With -D NO_SHUFFLES vectors stay whole: oclgrind 21.10 takes
 // the halves for uninitialised.
 bool any_lane(const intv condition) {
 #if LANES == 1
     return condition != 0;
+#elif defined(mask_of_lanes)
+    return mask_of_lanes(condition) != 0u;
 #elif defined(NO_SHUFFLES)
     return any(condition);
 #else
@@ -96,6 +105,25 @@ bool any_lane(const intv condition) {
     return (two.x | two.y) != 0;
 #endif
 }
+
+// Returns a bit for each lane in which a comparison holds, the first lane's the lowest.
+uint lane_bits(const intv condition) {
+#if LANES == 1
+    return condition != 0;
+#elif defined(mask_of_lanes)
+    return mask_of_lanes(condition);
+#else
+    int lanes[LANES];
+    uint bits = 0u;
+    JOIN(vstore, LANES)(condition, 0, lanes);
+    for (uint lane = 0u; lane < LANES; ++lane)
+        bits |= (uint)(lanes[lane] & 1) << lane;
+    return bits;
+#endif
+}
+
+// Returns the lane of the lowest bit.
+#define LOWEST_LANE(bits) (31u - (uint)clz((bits) & -(bits)))
 
 typedef struct {
     floatv x, y, z;

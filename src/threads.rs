@@ -18,7 +18,7 @@ pub(crate) fn for_each_chunk<T: Send>(
         .for_each(|(index, chunk)| work(index, chunk));
 }
 
-/// So many values a thread takes at once from [`map`], [`greatest`] and [`find_first`], whose work is small.
+/// So many values a thread takes at once from [`map`], [`greatest`], [`sum`] and [`find_first`], whose work is small.
 #[cfg(feature = "threads")]
 const PART: usize = 4096;
 
@@ -38,6 +38,14 @@ pub(crate) fn greatest<T: Sync>(values: &[T], size: impl Fn(&T) -> f64 + Send + 
     return sizes.reduce(|| 0.0, f64::max);
     #[cfg(not(feature = "threads"))]
     return values.iter().map(size).fold(0.0, f64::max);
+}
+
+/// Returns the sum of a whole number of each value: below 2^53 it does not depend on their order.
+pub(crate) fn sum<T: Sync>(values: &[T], number: impl Fn(&T) -> f64 + Send + Sync) -> f64 {
+    #[cfg(feature = "threads")]
+    return values.par_iter().with_min_len(PART).map(number).sum();
+    #[cfg(not(feature = "threads"))]
+    return values.iter().map(number).sum();
 }
 
 /// Calls `work` with the place of the first value of each chunk of `len` values, and the chunk; the last may be short.

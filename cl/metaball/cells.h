@@ -1,17 +1,18 @@
 // Where particles are: in slabs of depth, each of which is a grid of cells, squares of rays. A slab and the rays that
 // come within a radius of its particles meet in a rectangle of cells; the particles of a row of it lie side by side.
 #pragma once
+#include "../lanes.h"
 #include "types.h"
 
 // Returns a position seen from the eye, along the axes of the picture.
-float3 seen_from_eye(const Sight *const sight, __global const Surface *const surface,
-                     __global const Point *const point) {
+INLINE float3 seen_from_eye(const Sight *const sight, __global const Surface *const surface,
+                            __global const Point *const point) {
     const float4 from_eye = (point->place - surface->origin) + (point->rest - surface->origin_rest);
     const float3 p = from_eye.xyz;
     return (float3)(dot(p, sight->right.xyz), dot(p, sight->down.xyz), dot(p, sight->forward.xyz));
 }
 
-uint slab_at(__global const Surface *const surface, const float z) {
+INLINE uint slab_at(__global const Surface *const surface, const float z) {
     const float slab = (z - surface->first_z) / surface->thickness;
     return (uint)clamp(slab, 0.0f, (float)(surface->slab_count - 1u));
 }
@@ -21,12 +22,12 @@ float slab_begin(__global const Surface *const surface, const uint slab) {
 }
 
 // Returns the column, or row, of cells that a place in rays lies in; the first and the last are the border.
-uint cell_at(const float place, const float inverse_width, const uint count) {
+INLINE uint cell_at(const float place, const float inverse_width, const uint count) {
     return (uint)clamp(floor(place * inverse_width) + 1.0f, 0.0f, (float)(count - 1u));
 }
 
 // Says whether a position is more than a radius away from all rays: from the planes of the outermost.
-bool is_beside(const Sight *const sight, __global const Surface *const surface, const float3 p) {
+INLINE bool is_beside(const Sight *const sight, __global const Surface *const surface, const float3 p) {
     const float z = sight->is_parallel ? 1.0f : p.z;
     const float skew = (float)(sight->height - 1u) * sight->skew_x;
     const float2 begin = (float2)(sight->first_x, sight->first_y);
@@ -41,8 +42,8 @@ bool is_beside(const Sight *const sight, __global const Surface *const surface, 
     return any(before > at_first) || any(beyond > at_last);
 }
 
-uint cell_of(const Sight *const sight, __global const Surface *const surface, __global const Slab *const slabs,
-             const float3 p) {
+INLINE uint cell_of(const Sight *const sight, __global const Surface *const surface, __global const Slab *const slabs,
+                    const float3 p) {
     // What lies farther behind the eye, or beside the picture, reaches no ray.
     if (p.z < -surface->radius || is_beside(sight, surface, p))
         return NO_CELL;

@@ -2,16 +2,20 @@
 // radiance that its rays meet.
 #include "march.h"
 
+// Returns the first slab in which rays may meet a particle: none that ends behind the eye.
+uint first_followed(__global const Surface *const surface, const uint2 slabs) {
+    const float before_eye = -surface->first_z / surface->thickness;
+    const uint from_eye = before_eye > 0.0f ? (uint)before_eye : 0u;
+    return max(slabs.x > surface->reach ? slabs.x - surface->reach : 0u, from_eye);
+}
+
 // Passes slab after slab until all rays are at the surface, or behind all particles.
 INLINE void follow(const Search *const search, Near *const near, March *const march, const uint2 slabs) {
     __global const Surface *const surface = search->surface;
     const uint reach = surface->reach;
     const uint last = min(slabs.y + reach, surface->slab_count);
-    // Slabs that end behind the eye.
-    const float before_eye = -surface->first_z / surface->thickness;
-    const uint from_eye = before_eye > 0.0f ? (uint)before_eye : 0u;
     Window window = {0u, 0u, 0u, false, cursor_at(0u, 0u)};
-    for (uint slab = max(slabs.x > reach ? slabs.x - reach : 0u, from_eye); slab < last; ++slab) {
+    for (uint slab = first_followed(surface, slabs); slab < last; ++slab) {
         const floatv per_z = search->rays->per_z;
         const floatv begin = max(slab_begin(surface, slab) * per_z, 0.0f);
         const floatv end = slab_begin(surface, slab + 1u) * per_z;
@@ -23,9 +27,12 @@ INLINE void follow(const Search *const search, Near *const near, March *const ma
         move_window(search, &window, near, slab);
         if (window.is_kept && near->count == 0u)
             continue;
-        const intv found = march_on(search, &window, near, march, end);
-        if (any_lane(found))
-            settle(search, &window, near, march, found);
+        for (intv looks_on = march->is_open; any_lane(looks_on);) {
+            const intv found = march_on(search, &window, near, march, end);
+            if (!any_lane(found))
+                break;
+            looks_on = settle(search, &window, near, march, found);
+        }
     }
 }
 
@@ -46,74 +53,21 @@ INLINE float3v shade(const Sight *const sight, __global const Surface *const sur
     return scale3(color, fma(facing, splat(1.0f - AMBIENT), splat(AMBIENT)));
 }
 
-// Follows the rays of a block to every surface; the nearest is seen.
-INLINE float3v draw_block(Search *const search, const uint surface_count, __global const Surface *const surfaces,
-                          __global const Slab *const slabs, __global const uint2 *const squares, const uint square,
-                          Near *const near, March *const march) {
-    float3v light = uniform3((float4)(0.0f));
-    const intv is_inside = march->is_open;
-    intv is_hit = (intv)(0);
-    for (uint number = 0u; number < surface_count; ++number) {
-        __global const Surface *const surface = surfaces + number;
-        const uint2 range = squares[surface->first_square + square];
-        if (range.y <= range.x)
-            continue;
-        search->surface = surface;
-        search->slabs = slabs + surface->first_slab;
-        march->s = march->want = splat(0.0f);
-        march->taken = (uintv)(0u);
-        march->is_open = is_inside;
-        march->is_hit = (intv)(0);
-        follow(search, near, march, range);
-        light = select3(light, shade(search->sight, surface, march->normal), march->is_hit);
-        march->limit = select(march->limit, march->s, march->is_hit);
-        is_hit |= march->is_hit;
-    }
-    march->is_hit = is_hit;
-    march->is_open = is_inside;
-    return light;
-}
+// Rays across and down in a unit, at most, and blocks.
+#if LANES == 1
+#define UNIT_RAYS 8u
+#else
+#define UNIT_RAYS 16u
+#endif
+#define UNIT_BLOCKS ((UNIT_RAYS + BLOCK_COLUMNS - 1u) / BLOCK_COLUMNS * ((UNIT_RAYS + BLOCK_ROWS - 1u) / BLOCK_ROWS))
 
-Search search_of(const Sight *const sight, const Rays *const rays, const uint column, const uint row) {
-    Search search;
-    search.sight = sight;
-    search.rays = rays;
-    search.block = block_of(sight, column, row, BLOCK_COLUMNS, BLOCK_ROWS);
-    const Block *const block = &search.block;
-    const float middle_column = 0.5f * (block->left + block->right), middle_row = 0.5f * (block->top + block->bottom);
-    search.middle_x = fma(middle_column, sight->step_x, fma(middle_row, sight->skew_x, sight->first_x));
-    search.middle_y = fma(middle_row, sight->step_y, sight->first_y);
-    const float rows = block->bottom - block->top, down = rows * sight->step_y;
-    const float across = fma(block->right - block->left, sight->step_x, rows * fabs(sight->skew_x));
-    search.spread = 0.501f * sqrt(fma(across, across, down * down));
-    search.longest = sqrt(1.0f + block->steepest2);
-    return search;
-}
-
-// Pixels across and down in a unit, and rays in a pixel, at most.
-#define MOST_PIXELS 4u
-
-// What a unit, a square of whole pixels, has gathered.
+// A unit, a square of whole pixels, and what its rays have met: block by block.
 typedef struct {
-    float4 light[MOST_PIXELS * MOST_PIXELS];
-} Gathered;
-
-// Adds the light of a block's rays to their pixels, and stores their lengths.
-INLINE void gather_block(const Sight *const sight, const uint column, const uint row, const uint first_column,
-                         const uint first_row, const March *const march, const floatv length, const float3v light,
-                         Gathered *const gathered, __global float *const lengths) {
-    float red[LANES], green[LANES], blue[LANES], end[LANES];
-    scatter(light.x, red), scatter(light.y, green), scatter(light.z, blue), scatter(length, end);
-    const uint pixels = sight->unit / sight->across;
-    for (uint lane = 0u; lane < LANES; ++lane) {
-        const uint x = column + lane % BLOCK_COLUMNS, y = row + lane / BLOCK_COLUMNS;
-        if (x >= min(first_column + sight->unit, sight->width) || y >= min(first_row + sight->unit, sight->height))
-            continue;
-        const uint pixel = (y - first_row) / sight->across * pixels + (x - first_column) / sight->across;
-        gathered->light[pixel] += (float4)(red[lane], green[lane], blue[lane], 0.0f);
-        lengths[y * sight->width + x] = end[lane];
-    }
-}
+    uint first_column, first_row, end_column, end_row; // rays, the last not included
+    uint blocks_across;
+    float length[UNIT_BLOCKS * LANES]; // along the rays, or the axis of view, as depths are
+    float red[UNIT_BLOCKS * LANES], green[UNIT_BLOCKS * LANES], blue[UNIT_BLOCKS * LANES];
+} Unit;
 
 // Returns the given lengths that end rays, of the nearest in the picture.
 floatv given_lengths(const Sight *const sight, const uintv column, const uintv row,
@@ -125,6 +79,78 @@ floatv given_lengths(const Sight *const sight, const uintv column, const uintv r
     return gather(depths, as_intv(place));
 }
 
+// Columns and rows of the rays of a block, those beside the picture at its edge.
+#define COLUMNS_OF(sight, column) (min((column) + LANE_NUMBERS % BLOCK_COLUMNS, (uintv)((sight)->width - 1u)))
+#define ROWS_OF(sight, row) (min((row) + LANE_NUMBERS / BLOCK_COLUMNS, (uintv)((sight)->height - 1u)))
+
+// Begins a unit: nothing is met but what the host has given.
+INLINE void begin_unit(const Sight *const sight, const uint number, __global const float *const depths,
+                       Unit *const unit) {
+    const uint unit_columns = (sight->width + sight->unit - 1u) / sight->unit;
+    unit->first_column = number % unit_columns * sight->unit;
+    unit->first_row = number / unit_columns * sight->unit;
+    unit->end_column = min(unit->first_column + sight->unit, sight->width);
+    unit->end_row = min(unit->first_row + sight->unit, sight->height);
+    unit->blocks_across = (unit->end_column - unit->first_column + BLOCK_COLUMNS - 1u) / BLOCK_COLUMNS;
+    uint at = 0u;
+    for (uint row = unit->first_row; row < unit->end_row; row += BLOCK_ROWS)
+        for (uint column = unit->first_column; column < unit->end_column; column += BLOCK_COLUMNS) {
+            scatter(given_lengths(sight, COLUMNS_OF(sight, column), ROWS_OF(sight, row), depths), unit->length + at);
+            scatter(splat(0.0f), unit->red + at);
+            scatter(splat(0.0f), unit->green + at);
+            scatter(splat(0.0f), unit->blue + at);
+            at += LANES;
+        }
+}
+
+// Follows the rays of a block to a surface; the nearest is seen.
+INLINE void draw_block(Search *const search, const uint2 slabs, const uint column, const uint row, const uint at,
+                       Near *const near, Unit *const unit) {
+    const Sight *const sight = search->sight;
+    const Rays rays = rays_at(sight, COLUMNS_OF(sight, column), ROWS_OF(sight, row));
+    search->rays = &rays;
+    const floatv length = LOAD_LANES(unit->length + at);
+    March march;
+    march.s = march.want = splat(0.0f);
+    march.limit = sight->is_along_axis ? length * rays.per_z : length;
+    march.is_open = (column + LANE_NUMBERS % BLOCK_COLUMNS < unit->end_column) &
+                    (row + LANE_NUMBERS / BLOCK_COLUMNS < unit->end_row);
+    march.is_hit = march.is_strict = (intv)(0);
+    march.on = splat(0.0f);
+    march.taken = (uintv)(0u);
+    march.normal = uniform3((float4)(0.0f));
+    follow(search, near, &march, slabs);
+    if (!any_lane(march.is_hit))
+        return;
+    const float3v light = shade(sight, search->surface, march.normal);
+    const floatv found = sight->is_along_axis ? march.s / rays.per_z : march.s;
+    scatter(select(length, found, march.is_hit), unit->length + at);
+    scatter(select(LOAD_LANES(unit->red + at), light.x, march.is_hit), unit->red + at);
+    scatter(select(LOAD_LANES(unit->green + at), light.y, march.is_hit), unit->green + at);
+    scatter(select(LOAD_LANES(unit->blue + at), light.z, march.is_hit), unit->blue + at);
+}
+
+// Stores the lengths of a unit's rays, and the mean light of those of each pixel.
+INLINE void store_unit(const Sight *const sight, const Unit *const unit, __global float *const lengths,
+                       __global float4 *const light) {
+    const uint across = sight->across, picture_width = sight->width / across;
+    const float share = 1.0f / (float)(across * across);
+    for (uint first_row = unit->first_row; first_row < unit->end_row; first_row += across)
+        for (uint first_column = unit->first_column; first_column < unit->end_column; first_column += across) {
+            float4 sum = (float4)(0.0f);
+            for (uint row = first_row; row < first_row + across; ++row)
+                for (uint column = first_column; column < first_column + across; ++column) {
+                    const uint x = column - unit->first_column, y = row - unit->first_row;
+                    const uint block = y / BLOCK_ROWS * unit->blocks_across + x / BLOCK_COLUMNS;
+                    const uint at = block * LANES + y % BLOCK_ROWS * BLOCK_COLUMNS + x % BLOCK_COLUMNS;
+                    sum += (float4)(unit->red[at], unit->green[at], unit->blue[at], 0.0f);
+                    lengths[row * sight->width + column] = unit->length[at];
+                }
+            sum *= share;
+            light[first_row / across * picture_width + first_column / across] = (float4)(sum.xyz, 1.0f);
+        }
+}
+
 __kernel void draw_surfaces(const Sight sight, __global const Surface *const restrict surfaces,
                             const uint surface_count, __global const Slab *const restrict slabs,
                             __global const uint *const restrict cells,
@@ -133,51 +159,41 @@ __kernel void draw_surfaces(const Sight sight, __global const Surface *const res
                             __global const uint2 *const restrict squares, __global const float *const restrict depths,
                             const uint first_unit, const uint end_unit, __global uint *const restrict counts,
                             __global float *const restrict lengths, __global float4 *const restrict light) {
-    const uint unit = first_unit + get_global_id(0);
-    if (unit >= end_unit)
+    const uint number = first_unit + get_global_id(0);
+    if (number >= end_unit)
         return;
-    const uint unit_columns = (sight.width + sight.unit - 1u) / sight.unit;
-    const uint first_column = unit % unit_columns * sight.unit, first_row = unit / unit_columns * sight.unit;
-    Gathered gathered;
-    for (uint pixel = 0u; pixel < MOST_PIXELS * MOST_PIXELS; ++pixel)
-        gathered.light[pixel] = (float4)(0.0f);
+    Unit unit;
+    begin_unit(&sight, number, depths, &unit);
     Near near;
     forget(&near);
 #ifdef COUNT_NODES
     near.passes = near.pairs = 0u;
 #endif
-    const uint last_column = min(first_column + sight.unit, sight.width);
-    const uint last_row = min(first_row + sight.unit, sight.height);
-    for (uint row = first_row; row < last_row; row += BLOCK_ROWS)
-        for (uint column = first_column; column < last_column; column += BLOCK_COLUMNS) {
-            const uintv columns = column + LANE_NUMBERS % BLOCK_COLUMNS, rows = row + LANE_NUMBERS / BLOCK_COLUMNS;
-            const uintv inside_x = min(columns, (uintv)(sight.width - 1u));
-            const uintv inside_y = min(rows, (uintv)(sight.height - 1u));
-            const Rays rays = rays_at(&sight, inside_x, inside_y);
-            Search search = search_of(&sight, &rays, column, row);
-            search.cells = cells, search.particles = particles, search.planes = planes, search.plane = plane;
-            const floatv given = given_lengths(&sight, inside_x, inside_y, depths);
-            March march;
-            march.limit = sight.is_along_axis ? given * rays.per_z : given;
-            march.is_open = (columns < last_column) & (rows < last_row);
-            march.normal = uniform3((float4)(0.0f));
-            const uint square = row / sight.square * sight.span_columns + column / sight.square;
-            const float3v block_light =
-                draw_block(&search, surface_count, surfaces, slabs, squares, square, &near, &march);
-            const floatv found = sight.is_along_axis ? march.limit / rays.per_z : march.limit;
-            const floatv length = select(given, found, march.is_hit);
-            gather_block(&sight, column, row, first_column, first_row, &march, length, block_light, &gathered, lengths);
-        }
+    Listed listed;
+    const uint square = unit.first_row / sight.square * sight.span_columns + unit.first_column / sight.square;
+    for (uint at = 0u; at < surface_count; ++at) {
+        __global const Surface *const surface = surfaces + at;
+        const uint2 range = squares[surface->first_square + square];
+        if (range.y <= range.x)
+            continue;
+        Search whole;
+        whole.sight = &sight, whole.surface = surface, whole.slabs = slabs + surface->first_slab;
+        whole.cells = cells, whole.particles = particles, whole.planes = planes, whole.plane = plane;
+        whole.unit = &whole, whole.listed = &listed;
+        set_rectangle(&whole, unit.first_column, unit.first_row, sight.unit, sight.unit);
+        begin_list(&listed, first_of_window(surface, first_followed(surface, range)));
+        uint place = 0u;
+        for (uint row = unit.first_row; row < unit.end_row; row += BLOCK_ROWS)
+            for (uint column = unit.first_column; column < unit.end_column; column += BLOCK_COLUMNS) {
+                Search search = whole;
+                set_rectangle(&search, column, row, BLOCK_COLUMNS, BLOCK_ROWS);
+                draw_block(&search, range, column, row, place, &near, &unit);
+                place += LANES;
+            }
+    }
 #ifdef COUNT_NODES
     atomic_add(counts, near.passes);
     atomic_add(counts + 1, near.pairs);
 #endif
-    const uint pixels = sight.unit / sight.across, picture_width = sight.width / sight.across;
-    const float share = 1.0f / (float)(sight.across * sight.across);
-    for (uint y = 0u; y < pixels && first_row + y * sight.across < sight.height; ++y)
-        for (uint x = 0u; x < pixels && first_column + x * sight.across < sight.width; ++x) {
-            const float4 sum = share * gathered.light[y * pixels + x];
-            const uint pixel = (first_row / sight.across + y) * picture_width + first_column / sight.across + x;
-            light[pixel] = (float4)(sum.xyz, 1.0f);
-        }
+    store_unit(&sight, &unit, lengths, light);
 }

@@ -19,8 +19,6 @@ typedef struct {
 #define COUNT(counter, more)
 #endif
 
-#define TINY 1e-30f
-
 // Returns 1 / sqrt(x), x >= 0.
 floatv inverse_root(const floatv x) {
     return 0.5f * twice_inverse_sqrt_(max(x, splat(TINY)));
@@ -49,16 +47,22 @@ INLINE void add_field(Sums *const sums, const Near *const near, const uint place
     sums->growth += select(splat(0.0f), near->growth[place], meets);
 }
 
-// Returns what the field cannot exceed between two lengths: the most of all that meet the stretch.
-INLINE floatv most_between(const Search *const search, Window *const window, Near *const near, const floatv s,
-                           const floatv end) {
+// Lists those of the kept particles whose field any ray meets between two lengths: only they are summed there. Returns
+// what the field cannot exceed on each ray: the most of all that it meets.
+INLINE floatv begin_stretch(const Search *const search, Window *const window, Near *const near, const floatv s,
+                            const floatv end) {
     floatv most = splat(0.0f);
-    for (bool has_part = first_part(search, window, near); has_part; has_part = next_part(search, window, near))
+    for (bool has_part = first_part(search, window, near); has_part; has_part = next_part(search, window, near)) {
+        uint met = 0u;
         for (uint number = 0u; number < near->count; ++number) {
             const uint place = (near->begin + number) % ROOM;
             const intv meets = (near->leave[place] > s) & (near->enter[place] < end);
             most += select(splat(0.0f), near->most[place], meets);
+            near->met[met] = place;
+            met += any_lane(meets);
         }
+        near->met_count = met;
+    }
     return most;
 }
 
@@ -69,8 +73,8 @@ INLINE Sums field_along(const Search *const search, Window *const window, Near *
     const bool is_smooth = IS_SMOOTH(search->surface);
     COUNT(near->passes, 1u);
     for (bool has_part = first_part(search, window, near); has_part; has_part = next_part(search, window, near))
-        for (uint number = 0u; number < near->count; ++number) {
-            const uint place = (near->begin + number) % ROOM;
+        for (uint number = 0u; number < near->met_count; ++number) {
+            const uint place = near->met[number];
             COUNT(near->pairs, 1u);
             add_field(&sums, near, place, s, end, is_smooth);
         }
@@ -89,8 +93,8 @@ INLINE Gradient gradient_at(const Search *const search, Window *const window, Ne
     const floatv z = 1.0f / rays->per_z;
     const bool is_smooth = IS_SMOOTH(search->surface);
     for (bool has_part = first_part(search, window, near); has_part; has_part = next_part(search, window, near))
-        for (uint number = 0u; number < near->count; ++number) {
-            const uint place = (near->begin + number) % ROOM;
+        for (uint number = 0u; number < near->met_count; ++number) {
+            const uint place = near->met[number];
             __global const Particle *const particle = search->particles + near->particle[place];
             const Passing it = passing(rays, particle);
             const floatv u = s - it.at, r2 = fma(u, u, it.d2);

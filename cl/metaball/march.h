@@ -17,6 +17,8 @@ typedef struct {
     floatv limit;   // where something else ends them
     intv is_open;   // whether they go on
     intv is_hit;    // whether the surface is at s
+    floatv on;      // exactly: the step that is left to it
+    intv is_strict; // whether the surface is only where the field is seen to be at the threshold
     floatv want;    // method sampling: where the next sample may lie,
     uintv taken;    // and how many were taken
     float3v normal; // of the surface, along the axes of the picture
@@ -30,8 +32,9 @@ INLINE intv march_exactly(const Search *const search, Window *const window, Near
     const floatv none = splat(0.0f);
     intv found = (intv)(0);
     intv goes_on = march->is_open & (march->s < end);
+    const floatv most = begin_stretch(search, window, near, march->s, end);
 #ifndef STEP_BEYOND
-    const intv is_empty = most_between(search, window, near, march->s, end) < threshold * (1.0f - FIELD_ERROR);
+    const intv is_empty = most < threshold * (1.0f - FIELD_ERROR);
     march->s = select(march->s, end, goes_on & is_empty);
     goes_on &= ~is_empty;
 #endif
@@ -40,14 +43,18 @@ INLINE intv march_exactly(const Search *const search, Window *const window, Near
         const floatv missing = threshold - sums.field;
         const floatv error =
             fma(fabs(sums.slope), LENGTH_ERROR * (march->s + search->surface->radius), splat(FIELD_ERROR * threshold));
-        const intv is_there = goes_on & (missing <= error);
+        const floatv growth = max(sums.growth, splat(TINY)), left = max(missing, none);
+        const intv grows = sums.slope > 0.0f;
+        // Where Newton's step misses the threshold by no more than that, it is taken when the surface is settled.
+        const intv is_close = grows & ~march->is_strict & (growth * left * left <= error * sums.slope * sums.slope);
+        const intv is_there = goes_on & ((missing <= error) | is_close);
+        march->on = select(march->on, select(none, left * inverse(max(sums.slope, splat(TINY))), is_close), is_there);
         found |= is_there;
         goes_on &= ~is_there;
-        const floatv growth = max(sums.growth, splat(TINY)), left = max(missing, none);
-        const floatv root = sqrt(fma(sums.slope, sums.slope, 4.0f * growth * left));
-        const floatv grows = 2.0f * left / max(root + sums.slope, splat(TINY));
-        const floatv falls = (root - sums.slope) / (2.0f * growth);
-        const floatv step = max(select(falls, grows, sums.slope > 0.0f), LENGTH_ERROR * march->s);
+        const floatv root = 0.5f * twice_sqrt(max(fma(sums.slope, sums.slope, 4.0f * growth * left), splat(TINY)));
+        const floatv above = select(root - sums.slope, 2.0f * left, grows);
+        const floatv below = select(2.0f * growth, root + sums.slope, grows);
+        const floatv step = max(above * inverse(max(below, splat(TINY))), LENGTH_ERROR * march->s);
 #ifdef STEP_BEYOND
         // Spoiled: behind the end are particles that the bound does not know. Nor is an empty stretch passed at once.
         const floatv next = select(march->s + step, end, sums.growth <= 0.0f);
@@ -111,6 +118,7 @@ INLINE intv march_by_samples(const Search *const search, Window *const window, N
     const floatv end = min(slab_end, march->limit);
     intv found = (intv)(0);
     intv goes_on = march->is_open & (march->want < end);
+    meet_all(near);
     while (any_lane(goes_on)) {
         const floatv region = next_region(search, window, near, march->want);
         const floatv place = select(march->want, region, march->taken % AT_ONCE == 0u);
@@ -141,21 +149,29 @@ INLINE intv march_on(const Search *const search, Window *const window, Near *con
     return march_exactly(search, window, near, march, slab_end);
 }
 
-// Puts what was found onto the surface by a last Newton step, and takes its normal.
-INLINE void settle(const Search *const search, Window *const window, Near *const near, March *const march,
+// Puts what was found onto the surface by Newton's steps, and takes its normal. Returns which lanes have to look for it
+// further: the field that a step comes to may not be at the threshold.
+INLINE intv settle(const Search *const search, Window *const window, Near *const near, March *const march,
                    const intv found) {
-    const Gradient there = gradient_at(search, window, near, march->s);
+    const bool is_exact = search->surface->samples == 0u;
+    const float threshold = search->surface->threshold;
+    const floatv s = is_exact ? march->s + march->on : march->s;
+    const Gradient there = gradient_at(search, window, near, s);
     const float3v direction = {search->rays->x, search->rays->y, 1.0f / search->rays->per_z};
     const floatv slope = dot3(there.gradient, direction);
-    const floatv missing = search->surface->threshold - there.field;
-    const floatv step = missing / max(slope, splat(TINY));
+    const floatv missing = threshold - there.field;
+    const floatv error = fma(fabs(slope), LENGTH_ERROR * (s + search->surface->radius), splat(FIELD_ERROR * threshold));
+    const intv is_beside = is_exact ? found & (march->on > 0.0f) & (missing > error) : (intv)(0);
+    const intv is_settled = found & ~is_beside;
+    march->is_strict |= is_beside;
+    const floatv step = missing * inverse(max(slope, splat(TINY)));
     // Not where the eye is within the surface, nor where the ray just touches it.
     const float most = 1e-3f * search->surface->radius;
-    const intv is_small = found & (slope > 0.0f) & (fabs(step) < most);
-    const intv is_exact = search->surface->samples == 0u ? is_small : (intv)(0);
-    march->s = select(march->s, max(march->s + step, splat(0.0f)), is_exact);
+    const intv is_small = is_exact ? is_settled & (slope > 0.0f) & (fabs(step) < most) : (intv)(0);
+    march->s = select(march->s, max(select(s, s + step, is_small), splat(0.0f)), is_settled);
     const floatv outward = -inverse_root(dot3(there.gradient, there.gradient));
-    march->normal = select3(march->normal, scale3(there.gradient, outward), found);
-    march->is_hit |= found;
-    march->is_open &= ~found;
+    march->normal = select3(march->normal, scale3(there.gradient, outward), is_settled);
+    march->is_hit |= is_settled;
+    march->is_open &= ~is_settled;
+    return is_beside;
 }

@@ -12,7 +12,7 @@ typedef struct {
     float step_x, step_y;        // from a ray to the next one to the right, and below
     uint width, height;          // rays in a row, and in a column
     uint across;                 // rays across and down in a pixel
-    uint unit;                   // rays across and down that a work-item takes, whole pixels
+    uint unit;                   // rays across and down that a work-item takes, whole pixels, at most 16
     uint is_parallel;
     uint is_along_axis; // depths are lengths along the axis of view, not along the rays
     uint has_depth;     // something else hides the surfaces

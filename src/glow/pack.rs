@@ -1,6 +1,8 @@
 //! The structs of `cl/glow/types.h`, in the same order, and what packs particles into them, seen from the eye.
 
 use std::f64::consts::LOG2_E;
+use std::mem;
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -9,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::image::DepthAlong;
 use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
 use crate::scene::{LightElement, MetaballKernel, Scene, ViewPlane};
+use crate::threads;
 
 device_struct! {
     /// The grid of rays, and what light becomes along them.
@@ -88,6 +91,7 @@ pub(super) struct Sight {
     /// Slope, or offset, of the first pixel, and from one to the next.
     first: [f64; 2],
     step: [f64; 2],
+    per_step: [f64; 2],
     /// By which a row begins farther to the right than that above it.
     skew: f64,
     near: f64,
@@ -115,16 +119,18 @@ impl Sight {
             true => 1.0,
             false => 1.0 / plane.near,
         };
+        let step = [
+            scale * plane.column_step.length(),
+            scale * plane.row_step.dot(down),
+        ];
         Ok(Self {
             eye: plane.eye,
             right,
             down,
             forward: plane.forward,
             first: [right, down].map(|axis| scale * plane.first_pixel.dot(axis)),
-            step: [
-                scale * plane.column_step.length(),
-                scale * plane.row_step.dot(down),
-            ],
+            step,
+            per_step: step.map(f64::recip),
             skew: scale * plane.row_step.dot(right),
             near: plane.near,
             ray_length: plane.ray_length,
@@ -197,28 +203,30 @@ impl Sight {
         if center.z + radius <= self.near {
             return None;
         }
-        let across = |axis: usize| {
-            let (place, z) = (center[axis], center.z);
-            let (low, high) = match self.is_parallel {
-                true => (place - radius, place + radius),
-                // The eye is in the ball, or beside it: any ray may be.
-                false if z <= 1.001 * radius => (f64::NEG_INFINITY, f64::INFINITY),
-                false => {
-                    let square = (z - radius) * (z + radius);
-                    let root = radius * (place * place + square).sqrt();
-                    ((place * z - root) / square, (place * z + root) / square)
-                }
-            };
-            [low, high].map(|at| at - self.first[axis])
+        let (x, y, z) = (center.x, center.y, center.z);
+        let [[left, right], rows] = if self.is_parallel {
+            [[x - radius, x + radius], [y - radius, y + radius]]
+        } else if z <= 1.001 * radius {
+            // The eye is in the ball, or beside it: any ray may be.
+            [[f64::NEG_INFINITY, f64::INFINITY]; 2]
+        } else {
+            let square = (z - radius) * (z + radius);
+            let inverse = 1.0 / square;
+            [x, y].map(|place| {
+                let (middle, root) = (place * z, radius * (place * place + square).sqrt());
+                [(middle - root) * inverse, (middle + root) * inverse]
+            })
         };
-        let rows = across(1).map(|at| at / self.step[1]);
-        let [left, right] = across(0);
+        let rows = rows.map(|at| (at - self.first[1]) * self.per_step[1]);
         let [one, other] = match self.skew {
             0.0 => [0.0; 2],
             skew => rows.map(|row| row * skew),
         };
         let columns = [left - one.max(other), right - one.min(other)];
-        Some([columns.map(|at| at / self.step[0]), rows])
+        Some([
+            columns.map(|at| (at - self.first[0]) * self.per_step[0]),
+            rows,
+        ])
     }
 }
 
@@ -232,28 +240,71 @@ fn to_pole(scene: &Scene, plane: &ViewPlane) -> Option<f64> {
     }
 }
 
+/// So few particles are packed by one thread.
+const FEW: usize = 4096;
+
 /// What is packed of a frame: elements, and the pixels of each.
 #[derive(Debug, Default)]
 pub(super) struct Packed {
     pub elements: Vec<Element>,
     pub boxes: Vec<PixelBox>,
+    /// What each thread packs.
+    pieces: Vec<Piece>,
 }
 
 impl Packed {
     /// Packs all particles of a scene, in its order; those that no ray meets are left out.
     pub(super) fn pack(&mut self, scene: &Scene, sight: &Sight) {
+        let lists = scene.particles.iter().map(|it| it.points.len());
+        let count = lists.sum::<usize>() + scene.light_elements.len();
+        let pieces = threads::count().min(count.div_ceil(FEW)).max(1);
+        self.pieces.resize_with(pieces, Piece::default);
+        threads::for_each_chunk(&mut self.pieces, 1, |number, piece| {
+            let part = number * count / pieces..(number + 1) * count / pieces;
+            piece[0].pack(scene, sight, part);
+        });
+        let mut pieces = self.pieces.iter_mut();
+        if let Some(first) = pieces.next() {
+            mem::swap(&mut self.elements, &mut first.elements);
+            mem::swap(&mut self.boxes, &mut first.boxes);
+        }
+        for piece in pieces {
+            self.elements.extend_from_slice(&piece.elements);
+            self.boxes.extend_from_slice(&piece.boxes);
+        }
+    }
+}
+
+/// What is packed of some particles.
+#[derive(Debug, Default)]
+struct Piece {
+    elements: Vec<Element>,
+    boxes: Vec<PixelBox>,
+}
+
+impl Piece {
+    /// Packs some of all lists one after the other.
+    fn pack(&mut self, scene: &Scene, sight: &Sight, part: Range<usize>) {
         self.elements.clear();
         self.boxes.clear();
+        let mut first = 0;
+        let mut of_part = |len: usize| {
+            let [start, end] =
+                [part.start, part.end].map(|it| it.clamp(first, first + len) - first);
+            first += len;
+            start..end
+        };
         for particles in scene.particles.iter() {
             let form = match particles.kernel {
                 MetaballKernel::Smooth => IS_SMOOTH,
                 MetaballKernel::Cone => 0,
             };
-            particles.for_each(|center, radius, light| {
+            particles.for_each(of_part(particles.points.len()), |center, radius, light| {
                 self.add_ball(sight, (center, radius), light, form);
             });
         }
-        for element in scene.light_elements.iter() {
+        let elements = &scene.light_elements;
+        for element in &elements[of_part(elements.len())] {
             match element {
                 LightElement::Ball {
                     center,

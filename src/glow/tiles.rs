@@ -1,12 +1,19 @@
 //! Tiles of pixels, and which particles each of them sees: counted, added up, listed. All are listed by their numbers,
 //! so that sums over a list have one order; a streak is in the list of every tile that it crosses.
 
+use std::ops::Range;
+
+use crate::threads;
+
 /// Pixels across and down in the smallest tile, and in the largest: powers of two.
 const LEAST: u32 = 8;
 const MOST: u32 = 256;
 
 /// Entries of all lists, for each particle, that tiles are made so large for.
 const ENTRIES: f64 = 24.0;
+
+/// So few particles are listed by one thread.
+const FEW: usize = 4096;
 
 /// Pixels by which a particle's are wider than they need to be, so that rounding loses none.
 const ROUNDING: f64 = 0.05;
@@ -66,14 +73,20 @@ impl PixelBox {
         [self.columns, self.rows].map(|range| range.map(|at| at >> shift))
     }
 
-    /// Calls `visit` with every tile.
-    fn for_each_tile(&self, tile: u32, tile_columns: u32, mut visit: impl FnMut(usize)) {
+    /// Calls `visit` with every tile of some rows, counted from the first of these.
+    fn for_each_tile(
+        &self,
+        tile: u32,
+        tile_columns: u32,
+        rows: Range<u32>,
+        mut visit: impl FnMut(usize),
+    ) {
         let [[left, right], [top, bottom]] = self.tiles(tile);
         let is_line = self.width.is_finite() && (right > left && bottom > top);
-        for row in top..=bottom {
+        for row in top.max(rows.start)..(bottom + 1).min(rows.end) {
             for column in left..=right {
                 if !is_line || self.crosses(tile as f32, column as f32, row as f32) {
-                    visit((row * tile_columns + column) as usize);
+                    visit(((row - rows.start) * tile_columns + column) as usize);
                 }
             }
         }
@@ -110,24 +123,48 @@ impl Tiles {
         self.size = size_for(boxes, unit.max(LEAST));
         self.columns = width.div_ceil(self.size);
         let (tile, columns) = (self.size, self.columns);
+        let rows = height.div_ceil(tile);
         self.ends.clear();
-        self.ends
-            .resize((columns * height.div_ceil(tile)) as usize, 0);
-        for pixels in boxes {
-            pixels.for_each_tile(tile, columns, |at| self.ends[at] += 1);
-        }
+        self.ends.resize((columns * rows) as usize, 0);
+        let bands = match boxes.len() {
+            ..FEW => 1,
+            _ => threads::count().min(rows as usize).max(1),
+        };
+        let band = rows.div_ceil(bands as u32) * columns; // tiles of a band of whole rows
+        threads::for_each_part(&mut self.ends, band as usize, |first, counts| {
+            for pixels in boxes {
+                let row = first as u32 / columns;
+                let rows = row..row + counts.len() as u32 / columns;
+                pixels.for_each_tile(tile, columns, rows, |at| counts[at] += 1);
+            }
+        });
         let mut begin = 0;
         for end in &mut self.ends {
             (begin, *end) = (begin + *end, begin);
         }
         self.numbers.clear();
         self.numbers.resize(begin as usize, 0);
-        for (number, pixels) in (0_u32..).zip(boxes) {
-            pixels.for_each_tile(tile, columns, |at| {
-                self.numbers[self.ends[at] as usize] = number;
-                self.ends[at] += 1;
-            });
+        let mut parts = Vec::new();
+        let (mut rest, mut at) = (self.numbers.as_mut_slice(), 0);
+        let mut ends = self.ends.as_mut_slice();
+        while !ends.is_empty() {
+            let (these, others) = ends.split_at_mut(ends.len().min(band as usize));
+            let next = others.first().copied().unwrap_or(begin);
+            let (numbers, others_numbers) = rest.split_at_mut((next - at) as usize);
+            parts.push((at, these, numbers));
+            (ends, rest, at) = (others, others_numbers, next);
         }
+        threads::for_each_chunk(&mut parts, 1, |number, part| {
+            let (begin, ends, numbers) = &mut part[0];
+            let row = number as u32 * band / columns;
+            let rows = row..row + ends.len() as u32 / columns;
+            for (number, pixels) in (0_u32..).zip(boxes) {
+                pixels.for_each_tile(tile, columns, rows.clone(), |at| {
+                    numbers[(ends[at] - *begin) as usize] = number;
+                    ends[at] += 1;
+                });
+            }
+        });
     }
 }
 
@@ -135,12 +172,11 @@ impl Tiles {
 fn size_for(boxes: &[PixelBox], least: u32) -> u32 {
     let most = ENTRIES * boxes.len() as f64 + 4096.0;
     let entries = |tile: u32| {
-        let of = |pixels: &PixelBox| {
+        threads::sum(boxes, |pixels| {
             let count = |[first, last]: [u32; 2]| u64::from(last - first) + 1;
             let [columns, rows] = pixels.tiles(tile);
             (count(columns) * count(rows)) as f64
-        };
-        boxes.iter().map(of).sum::<f64>()
+        })
     };
     let mut tile = least;
     while tile < MOST && entries(tile) > most {

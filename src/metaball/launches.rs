@@ -13,6 +13,9 @@ use crate::opencl::{Argument, Compute, DeviceForm, Handle, Kernel};
 const GROUP: usize = 16;
 const GPU_GROUP: usize = 64;
 
+/// Units of rays in a group.
+const UNIT_GROUP: usize = 2;
+
 /// Units of rays of a launch: desktop GPUs kill launches of seconds.
 const UNITS: u32 = 1 << 16;
 
@@ -83,7 +86,7 @@ impl Launches<'_> {
         for first in (0..units).step_by(UNITS as usize) {
             let end = units.min(first + UNITS);
             let some: [(&str, &dyn Argument); 2] = [("first_unit", &first), ("end_unit", &end)];
-            self.launch(&kernels.draw_surfaces, &some, end - first, GROUP)?;
+            self.launch(&kernels.draw_surfaces, &some, end - first, UNIT_GROUP)?;
         }
         Ok(())
     }

@@ -335,6 +335,7 @@ impl Surfaces {
         Ok(SeenSurfaces {
             depth: DepthImage::new(size, along, lengths)?,
             light: light.into(),
+            lit: None,
         })
     }
 }

@@ -57,16 +57,10 @@ pub(super) fn sight(scene: &Scene, across: u32, lanes: u32) -> Result<(Sight, Vi
     } else {
         1.0 / plane.near
     };
-    // Columns of a block of rays, or pixels that end elsewhere.
-    let block = match lanes {
-        1 => 1,
-        4 => 2,
-        _ => 4,
-    };
-    let unit = if across < block && block.is_multiple_of(across) {
-        block
-    } else {
-        across
+    let unit = match lanes {
+        1 => across,
+        4 => across * (8 / across).max(1),
+        _ => across * (16 / across).max(1),
     };
     let square = unit * LEAST_SQUARE.div_ceil(unit);
     let along = scene.depth.as_ref().map(|depth| depth.along());

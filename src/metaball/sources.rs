@@ -9,6 +9,7 @@ const FILES: &[SourceFile<'static>] = embed!(
     "metaball/march.h",
     "metaball/metaball.cl",
     "metaball/near.h",
+    "metaball/search.h",
     "metaball/sort.cl",
     "metaball/types.h",
 );

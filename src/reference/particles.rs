@@ -139,7 +139,7 @@ impl Particles {
     pub(super) fn new(scene: &Scene, integrand: Integrand) -> Self {
         let mut bodies = Vec::new();
         for particles in scene.particles.iter() {
-            particles.for_each(|center, radius, light| {
+            particles.for_each(0..particles.points.len(), |center, radius, light| {
                 bodies.push(Body::ball(center, radius, light, particles.kernel));
             });
         }

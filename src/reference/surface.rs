@@ -401,5 +401,6 @@ pub(crate) fn see_surfaces(scene: &Scene) -> Result<SeenSurfaces> {
     Ok(SeenSurfaces {
         depth: DepthImage::new(grid, along, depths)?,
         light: light.into(),
+        lit: None,
     })
 }

@@ -36,6 +36,8 @@ struct Traced {
     depth: DepthImage,
     /// Without other surfaces.
     light: Arc<Vec<f32>>,
+    /// Columns and rows of pixels beside which there is none.
+    lit: [Range<usize>; 2],
 }
 
 /// What lengths depend on.
@@ -148,6 +150,7 @@ impl Renderer {
             true => Ok(SeenSurfaces {
                 depth,
                 light: Arc::clone(&traced.light),
+                lit: Some(traced.lit.clone()),
             }),
             false => {
                 let behind = Scene {
@@ -204,7 +207,14 @@ impl Traced {
         });
         let depth = DepthImage::new(grid, DepthAlong::Ray, lengths)?;
         let light = shade(scene, &depth, &colliders).into();
-        Ok(Self { of, depth, light })
+        let across = grid.width as usize / scene.image.width.max(1) as usize;
+        let lit = window.map(|rays| rays.start / across..rays.end.div_ceil(across));
+        Ok(Self {
+            of,
+            depth,
+            light,
+            lit,
+        })
     }
 }
 

@@ -1,5 +1,7 @@
 //! Particles as light: a list of points, each of which shines as far as its radius.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::points::PointList;
@@ -57,12 +59,12 @@ impl Particles {
         }
     }
 
-    /// Calls `visit` with position, radius and light of every particle.
-    pub(crate) fn for_each(&self, mut visit: impl FnMut(DVec3, f64, DVec3)) {
+    /// Calls `visit` with position, radius and light of every particle of a range.
+    pub(crate) fn for_each(&self, range: Range<usize>, mut visit: impl FnMut(DVec3, f64, DVec3)) {
         let light = self.coefficient * self.color;
-        let positions = self.points.positions().iter();
+        let positions = self.points.positions()[range.clone()].iter();
         match self.points.sizes() {
-            Some(sizes) => positions.zip(sizes).for_each(|(position, size)| {
+            Some(sizes) => positions.zip(&sizes[range]).for_each(|(position, size)| {
                 visit(*position + self.translate, size.radius, size.weight * light);
             }),
             None => positions.for_each(|position| {

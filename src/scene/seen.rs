@@ -22,6 +22,8 @@ pub(crate) struct SeenSurfaces {
     pub depth: DepthImage,
     /// The mean radiance of each pixel's rays, RGBA by rows.
     pub light: Arc<Vec<f32>>,
+    /// Columns and rows of pixels beside which there is no light; `None`: not known.
+    pub lit: Option<[Range<usize>; 2]>,
 }
 
 impl Scene {
@@ -68,11 +70,13 @@ impl SeenSurfaces {
         Self {
             depth,
             light: light.into(),
+            lit: Some([0..0, 0..0]),
         }
     }
 
     /// Adds the light of further surfaces of the same picture, whose alpha is the same.
     pub(crate) fn brighten(&mut self, more: &[f32]) {
+        self.lit = None;
         let light = Arc::make_mut(&mut self.light).as_chunks_mut::<4>().0;
         for (to, from) in light.iter_mut().zip(more.as_chunks::<4>().0) {
             (0..3).for_each(|channel| to[channel] += from[channel]);
@@ -111,13 +115,13 @@ impl SeenSurfaces {
         rows: Range<u32>,
         (target, stride): (&mut [f32], usize),
     ) {
-        for (to, from) in self.rows(scene, rows).zip_rows(target, stride) {
-            for (to, from) in to
-                .as_chunks_mut::<4>()
-                .0
-                .iter_mut()
-                .zip(from.as_chunks::<4>().0)
-            {
+        let (first, width) = (rows.start as usize, scene.image.width as usize);
+        let all = || [0..width, 0..scene.image.height as usize];
+        let [columns, lit_rows] = self.lit.clone().unwrap_or_else(all);
+        let rows = self.rows(scene, rows).zip_rows(target, stride).enumerate();
+        for (_, (to, from)) in rows.filter(|(row, _)| lit_rows.contains(&(first + row))) {
+            let to = &mut to.as_chunks_mut::<4>().0[columns.clone()];
+            for (to, from) in to.iter_mut().zip(&from.as_chunks::<4>().0[columns.clone()]) {
                 (0..3).for_each(|channel| to[channel] += from[channel]);
             }
         }
