@@ -19,7 +19,6 @@ const FILES: &[SourceFile<'static>] = embed!(
     "wave/quadrature/closed_form_square.h",
     "wave/quadrature/decay.h",
     "wave/quadrature/edge.h",
-    "wave/quadrature/open.h",
     "wave/quadrature/panel.h",
     "wave/quadrature/quadrature.h",
     "wave/quadrature/reduction.h",

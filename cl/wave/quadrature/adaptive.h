@@ -1,16 +1,19 @@
 // The integral of the field of a KIND times the decay, to a relative error: Gauss-Legendre quadrature on mapped panels
 // (panel.h). Two null rules on the same nodes, the highest Legendre coefficients that they see, tell how well a panel
-// is resolved; one that is not is cut in two. A kind without closed form includes this file at the end of its own
-// header, where it has defined KIND: that makes its KIND_integral, torus_integral for instance.
+// is resolved; one that is not is cut in two, in all lanes. A kind without closed form includes this
+// file at the end of its own header, where it has defined KIND: that makes its KIND_integral, torus_integral for
+// instance.
 //
 // The host gives the positive nodes of the rule, the outermost first, their weights and those of the null rules as
 // GAUSS_..., and as `threshold` how large the coefficients may be, of the integral.
 
-// Cuts of a ray's panels in all, by which factor errors may grow with every cut of the second half, how much worse than
-// its nodes tell a panel with kinks may be, and the share of the first estimate that errors may be measured by.
+// Cuts of a ray's panels in all, panels that may be open at once, by which factor errors may grow with every cut of the
+// second half, how much worse than its nodes tell a panel with kinks may be, and the share of the first estimate
+// that errors may be measured by.
 #ifndef MOST_CUTS
 #define MOST_CUTS 64
 #endif
+#define MOST_PANELS 24
 #define PATIENCE 1.25f
 #define DOUBT 30.0f
 #define FIRST_ESTIMATE 0.25f
@@ -120,53 +123,46 @@ INLINE PanelSum KIND_sum_panel(const KIND_peaks *const peaks, const Decay decay,
 #if KIND_HAS(two_panels)
 #if LANES > 1
 // Opens the halves of a panel in place of it, and returns which lanes have them; others are done with it.
-INLINE intv KIND_halve(OpenPanels *const open, const PanelSum *const sum, const floatv from, const floatv to,
-                       const intv is_rough) {
+INLINE intv KIND_halve(const PanelSum *const sum, const floatv from, const floatv to, const intv has_panel,
+                       floatv *const all_from, floatv *const all_to) {
     const floatv cut = sum->middle;
-    const intv is_cut = (cut > from) & (cut < to) & is_rough;
-    open_panel(open, cut, to, is_cut);
-    open_panel(open, from, cut, is_cut);
+    const intv is_cut = (cut > from) & (cut < to) & has_panel;
+    all_from[0] = select(from, cut, is_cut), all_to[0] = select(from, to, is_cut);
+    all_from[1] = from, all_to[1] = select(from, cut, is_cut);
     return is_cut;
 }
 #endif
 
-// Integrates two panels, the later one being number 0, at once, so that one works while the other waits. Opens them
-// again, of vectors the halves of each that a lane has not resolved, and returns what is done; `estimate` is
-// everything.
-INLINE floatv KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold,
-                              const floatv *const from, const floatv *const to, OpenPanels *const open,
-                              floatv *const estimate, intv *const own_cuts, uint *const nodes) {
+// Integrates the two panels on both sides of a cut at once, so that one works while the other waits. Returns how many
+// panels are open then, in the place of the two: of vectors the halves of each that a lane has not resolved.
+// `integral` gets what is done, `estimate` everything.
+INLINE uint KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, const float threshold,
+                            floatv *const all_from, floatv *const all_to, floatv *const integral,
+                            floatv *const estimate, intv *const own_cuts) {
+    const floatv begin = peaks->begin, cut = all_to[1], end = peaks->end;
 #if LANES == 1
     // One after the other, from one copy of the code: other work-items work while one waits.
     floatv unresolved = 0.0f;
     *estimate = 0.0f;
 #pragma unroll 1
-    for (int k = 1; k >= 0; --k) {
-        if (is_empty_panel(decay, from[k], to[k]))
+    for (int k = 0; k < 2; ++k) {
+        const floatv from = k == 0 ? begin : cut, to = k == 0 ? cut : end;
+        if (is_empty_panel(decay, from, to))
             continue;
-        KIND_panel panel = KIND_open_panel(peaks, decay, from[k], to[k]);
+        KIND_panel panel = KIND_open_panel(peaks, decay, from, to);
         const PanelSum sum = KIND_sum_panel(peaks, decay, &panel);
-        *nodes += 2 * GAUSS_PAIRS;
         *estimate += sum.integral;
         unresolved = max(unresolved, sum.unresolved);
     }
-    if (!is_beyond(unresolved, threshold * *estimate))
-        return *estimate;
-    for (int k = 0; k < 2; ++k)
-        open_panel(open, from[k], to[k], !is_empty_panel(decay, from[k], to[k]));
-    return 0.0f;
+    if (is_beyond(unresolved, threshold * *estimate))
+        return 2;
+    *integral = *estimate;
+    return 0;
 #else
-    const intv has_first = !is_empty_panel(decay, from[1], to[1]), has_second = !is_empty_panel(decay, from[0], to[0]);
-    if (!any_lane(has_first) || !any_lane(has_second)) { // there is but one
-        open_panel(open, from[0], to[0], has_second);
-        open_panel(open, from[1], to[1], has_first);
-        return splat(0.0f);
-    }
-    *nodes += 4 * GAUSS_PAIRS;
-    const floatv first_end = select(from[1] + 1.0f, to[1], has_first);
-    const floatv second_begin = select(splat(0.0f), from[0], has_second);
-    const floatv second_end = select(splat(1.0f), to[0], has_second);
-    KIND_panel first = KIND_open_panel(peaks, decay, from[1], first_end);
+    const intv has_first = !is_empty_panel(decay, begin, cut), has_second = !is_empty_panel(decay, cut, end);
+    const floatv first_end = select(begin + 1.0f, cut, has_first), second_begin = select(splat(0.0f), cut, has_second);
+    const floatv second_end = select(splat(1.0f), end, has_second);
+    KIND_panel first = KIND_open_panel(peaks, decay, begin, first_end);
     KIND_panel second = KIND_open_panel(peaks, decay, second_begin, second_end);
     const PanelSum of_first = KIND_sum_panel(peaks, decay, &first);
     const PanelSum of_second = KIND_sum_panel(peaks, decay, &second);
@@ -174,13 +170,23 @@ INLINE floatv KIND_two_panels(const KIND_peaks *const peaks, const Decay decay, 
     const floatv second_part = select(splat(0.0f), of_second.integral, has_second);
     *estimate = first_part + second_part;
     const floatv allowed = threshold * *estimate;
-    const intv may_cut = (intv)(MOST_CUTS > 0 ? -1 : 0);
-    const intv first_is_rough = is_beyond(of_first.unresolved, allowed) & has_first & may_cut;
-    const intv second_is_rough = is_beyond(of_second.unresolved, allowed) & has_second & may_cut;
-    const intv second_is_cut = KIND_halve(open, &of_second, from[0], to[0], second_is_rough);
-    const intv first_is_cut = KIND_halve(open, &of_first, from[1], to[1], first_is_rough);
-    *own_cuts -= first_is_rough + second_is_rough; // true is -1
-    return select(second_part, splat(0.0f), second_is_cut) + select(first_part, splat(0.0f), first_is_cut);
+    const intv first_is_rough = is_beyond(of_first.unresolved, allowed) & has_first;
+    const intv second_is_rough = is_beyond(of_second.unresolved, allowed) & has_second;
+    intv has_halves = (intv)(0);
+    uint open = 0;
+    if (MOST_CUTS > 0 && any_lane(second_is_rough)) {
+        has_halves = KIND_halve(&of_second, cut, end, has_second, all_from, all_to);
+        open = 2;
+    }
+    *integral = select(second_part, splat(0.0f), has_halves);
+    has_halves = (intv)(0);
+    if (MOST_CUTS > 0 && any_lane(first_is_rough)) {
+        has_halves = KIND_halve(&of_first, begin, cut, has_first, all_from + open, all_to + open);
+        open += 2;
+    }
+    *integral += select(first_part, splat(0.0f), has_halves);
+    *own_cuts += select((intv)(0), (intv)(1), first_is_rough) + select((intv)(0), (intv)(1), second_is_rough);
+    return open;
 #endif
 }
 #endif
@@ -208,24 +214,6 @@ INLINE void KIND_trim(const KIND_peaks *const peaks, const uint count, floatv *c
 }
 #endif
 
-#if KIND_HAS(dark_parts)
-// Returns what the panels add up to by their nodes as they are.
-INLINE floatv KIND_survey(const KIND_peaks *const peaks, const Decay decay, const uint count, const floatv *const from,
-                          const floatv *const to, uint *const nodes) {
-    floatv sum = splat(0.0f);
-    for (uint k = count; k > 0; --k) {
-        const intv is_empty = is_empty_panel(decay, from[k - 1], to[k - 1]);
-        if (!any_lane(!is_empty))
-            continue;
-        KIND_panel opened = KIND_open_panel(peaks, decay, from[k - 1], select(to[k - 1], splat(1.0f), is_empty));
-        const PanelSum panel = KIND_sum_panel(peaks, decay, &opened);
-        *nodes += 2 * GAUSS_PAIRS;
-        sum += select(panel.integral, splat(0.0f), is_empty);
-    }
-    return sum;
-}
-#endif
-
 INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadrature *const quadrature) {
     const Decay decay = quadrature->decay;
 #if KIND_HAS(kinks) || defined(FADING)
@@ -238,72 +226,89 @@ INLINE floatv KIND_integral_of(const KIND_peaks *const all_peaks, const Quadratu
     peaks.end = min(peaks.end, darkness(decay));
     peaks.begin = min(peaks.begin, peaks.end);
 #endif
-    floatv first_from[FIRST_PANELS], first_to[FIRST_PANELS], integral;
-    const uint count = KIND_panels(&peaks, quadrature, first_from, first_to, &integral);
+    floatv all_from[MOST_PANELS], all_to[MOST_PANELS], integral;
+    uint open = KIND_panels(&peaks, quadrature, all_from, all_to, &integral);
 #if defined(SHAPES) && KIND_HAS(peaks_along)
-    if (HAS_END(&peaks.path.profile)) {
-        KIND_trim(&peaks, count, first_from, first_to);
+    const bool has_end = HAS_END(&peaks.path.profile);
+    if (has_end) {
+        KIND_trim(&peaks, open, all_from, all_to);
         threshold = quadrature->kinked_threshold;
     }
+#else
+    const bool has_end = false;
 #endif
     // Of every lane: what one cannot resolve is not to spoil its neighbours.
-    floatv patience = splat(threshold), estimate = integral;
+    floatv patience = splat(threshold);
     intv own_cuts = (intv)(0);
 #if KIND_HAS(more_cuts)
-    const intv most_cuts = (intv)((int)(MOST_CUTS + KIND_more_cuts(&peaks)));
+    const uint most_cuts = MOST_CUTS + KIND_more_cuts(&peaks);
 #else
-    const intv most_cuts = (intv)(MOST_CUTS);
+    const uint most_cuts = MOST_CUTS;
 #endif
-    OpenPanels open;
-    open_none(&open);
     uint nodes = 0;
+    bool has_cut = false;
+    floatv estimate = integral;
 #if KIND_HAS(two_panels)
-    integral += KIND_two_panels(&peaks, decay, threshold, first_from, first_to, &open, &estimate, &own_cuts, &nodes);
-#else
-    for (uint k = 0; k < count; ++k)
-        open_panel(&open, first_from[k], first_to[k], !is_empty_panel(decay, first_from[k], first_to[k]));
+    if (!has_end) {
+        nodes += 4 * GAUSS_PAIRS;
+        open = KIND_two_panels(&peaks, decay, threshold, all_from, all_to, &integral, &estimate, &own_cuts);
+    }
 #endif
+    const uint all = open;
 #if KIND_HAS(dark_parts)
-    if (KIND_is_uneven(&peaks))
-        estimate += KIND_survey(&peaks, decay, count, first_from, first_to, &nodes);
+    bool is_survey = KIND_is_uneven(&peaks);
+#else
+    bool is_survey = false;
 #endif
-    floatv from = splat(0.0f), to = splat(1.0f);
-    intv is_open = next_panel(&open, (intv)(-1), &from, &to);
-    while (any_lane(is_open)) {
-        const intv is_empty = !is_open | is_empty_panel(decay, from, to);
-        floatv value = splat(0.0f), cut = from;
+    while (open > 0 || is_survey) {
+        if (open == 0) {
+            is_survey = false, open = all;
+            continue;
+        }
+        --open;
+        const floatv from = all_from[open];
+        const intv is_empty = is_empty_panel(decay, from, all_to[open]);
+        if (!any_lane(!is_empty))
+            continue;
+        const floatv to = select(all_to[open], splat(1.0f), is_empty);
+        floatv value = splat(0.0f);
         intv is_done = is_empty;
 #if KIND_HAS(closed_ends)
-        const intv may_be_closed = (own_cuts > 0) & !is_empty;
-        if (any_lane(may_be_closed))
-            is_done |= may_be_closed & KIND_closed(&peaks, quadrature, from, to, &value);
-        value = select(splat(0.0f), value, is_done);
+        if (has_cut)
+            is_done |= KIND_closed(&peaks, quadrature, from, to, &value);
 #endif
-        intv is_cut = (intv)(0);
         if (any_lane(!is_done)) {
-            KIND_panel opened = KIND_open_panel(&peaks, decay, from, select(to, splat(1.0f), is_empty));
+            KIND_panel opened = KIND_open_panel(&peaks, decay, from, to);
             const PanelSum panel = KIND_sum_panel(&peaks, decay, &opened);
             nodes += 2 * GAUSS_PAIRS;
             value = select(panel.integral, value, is_done);
+            if (is_survey) {
+                estimate += select(value, splat(0.0f), is_empty);
+                continue;
+            }
             const floatv allowed = patience * max(fabs(integral + value), FIRST_ESTIMATE * fabs(estimate));
             const intv is_rough = (is_beyond(panel.unresolved, allowed) | (panel.unseen > allowed)) & !is_done &
-                                  (own_cuts < most_cuts) & (open.count + 2 <= MOST_PANELS);
-            if (any_lane(is_rough)) {
+                                  (own_cuts < (intv)((int)most_cuts));
+            if (open + 2 <= MOST_PANELS && any_lane(is_rough)) {
                 // What is as short as float32 can tell stays whole.
-                is_cut = (panel.middle > from) & (panel.middle < to) & is_rough;
+                const intv is_cut = (panel.middle > from) & (panel.middle < to) & !is_done;
 #if KIND_HAS(jumps)
-                cut = KIND_split(&peaks, from, to, panel.middle);
+                const floatv cut = KIND_split(&peaks, from, to, panel.middle);
 #else
-                cut = panel.middle;
+                const floatv cut = panel.middle;
 #endif
+                // Lanes that are done with the panel, or have it whole, find both halves empty.
+                integral += select(value, splat(0.0f), is_empty | is_cut);
+                all_from[open] = select(from, cut, is_cut), all_to[open] = select(from, to, is_cut);
+                all_from[open + 1] = from, all_to[open + 1] = select(from, cut, is_cut);
+                open += 2;
+                has_cut = true;
                 own_cuts += select((intv)(0), (intv)(1), is_rough);
-                patience = select(patience, PATIENCE * patience, is_rough & (own_cuts > most_cuts / 2));
+                patience = select(patience, PATIENCE * patience, is_rough & (own_cuts > (intv)((int)most_cuts / 2)));
+                continue;
             }
         }
-        integral += select(value, splat(0.0f), is_empty | is_cut);
-        open_panel(&open, cut, to, is_cut);
-        to = select(to, cut, is_cut);
-        is_open = is_cut | next_panel(&open, !is_cut, &from, &to);
+        integral += select(value, splat(0.0f), is_empty);
     }
 #ifdef COUNT_NODES
     atomic_add(quadrature->counts + COUNT_NODES_TAKEN, nodes * LANES);

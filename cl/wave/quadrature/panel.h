@@ -7,7 +7,6 @@
 #include "../../view.h"
 #include "decay.h"
 #include "edge.h"
-#include "open.h"
 
 // The advance of v up to which a panel is empty, as a share of the advance from the beginning of the ray.
 #define SHORTEST_PANEL 1e-13f

@@ -47,7 +47,6 @@
 #define KIND_sum_panel JOIN(KIND, _sum_panel)
 #define KIND_halve JOIN(KIND, _halve)
 #define KIND_two_panels JOIN(KIND, _two_panels)
-#define KIND_survey JOIN(KIND, _survey)
 #define KIND_at_end JOIN(KIND, _at_end) // ../tiles/settle.h
 #define KIND_settle JOIN(KIND, _settle)
 #define KIND_through JOIN(KIND, _through) // ../footprint/seen.h
