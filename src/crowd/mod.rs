@@ -23,7 +23,7 @@ use crate::opencl::{
     Argument, Compute, Film, FilmFormat, Handle, Kernel, RawMemory, RendererOptions,
     UploadedShared, run_time,
 };
-use crate::scene::{Camera, CrowdSight, Integration, List, Points, Profile, Scene};
+use crate::scene::{Camera, CrowdSight, Integration, Points, Profile, Scene};
 use buffers::{Buffers, NODES_OF_TILE};
 use kernels::Kernels;
 pub(crate) use kernels::build_text;
@@ -60,10 +60,10 @@ pub(crate) struct Crowd {
     cost: FrameCost,
 }
 
-/// What decides how points are seen and sorted.
+/// What decides how points are seen and sorted. Of the lists themselves, which may be a host's, nothing is kept.
 #[derive(Debug, Clone, PartialEq)]
 struct Known {
-    points: List<Points>,
+    points: Vec<(u64, Points)>,
     camera: Camera,
     image: ImageSize,
     integration: Integration,
@@ -137,7 +137,7 @@ impl Crowd {
         }
         let sight = CrowdSight::new(scene)?;
         let known = Known {
-            points: scene.points.clone(),
+            points: scene.points.iter().map(Points::stamp).collect(),
             camera: scene.camera.clone(),
             image: scene.image,
             integration: scene.integration,
