@@ -78,7 +78,7 @@ pub mod verify;
 pub mod volume;
 mod wave;
 
-pub use cost::FrameCost;
+pub use cost::{CrowdCost, FrameCost};
 pub use error::{Cause, Error, ErrorKind, Result, SceneError};
 pub use glam; // whose vectors are in scenes
 pub use image::{DisplayImage, RadianceImage};
