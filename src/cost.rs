@@ -10,6 +10,8 @@ pub struct FrameCost {
     pub kernel: Duration,
     /// The part of that which meshes took: what rays meet of them, if that was not kept, and their light.
     pub meshes: Duration,
+    /// What crowds of points took.
+    pub crowds: CrowdCost,
     /// Integrals: pairs of a ray and a source.
     pub integrals: u64,
     /// Samples of fields. 0 where they were not counted: the method `exact` takes as many as it needs and counts them
@@ -19,12 +21,38 @@ pub struct FrameCost {
     pub launches: u32,
 }
 
+/// What the stages of drawing crowds of points took, if points were sorted anew.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[non_exhaustive]
+pub struct CrowdCost {
+    /// On the host: points are seen from the eye, sorted, and put where the device reads them.
+    pub sorting: Duration,
+    /// In kernels: light is laid on the nodes of cells.
+    pub cells: Duration,
+    /// In kernels: tiles take the light of cells.
+    pub tiles: Duration,
+    /// In kernels: pixels take the light of tiles, and of points next to them.
+    pub pixels: Duration,
+}
+
+impl CrowdCost {
+    fn both(self, other: Self, both: impl Fn(Duration, Duration) -> Duration) -> Self {
+        Self {
+            sorting: both(self.sorting, other.sorting),
+            cells: both(self.cells, other.cells),
+            tiles: both(self.tiles, other.tiles),
+            pixels: both(self.pixels, other.pixels),
+        }
+    }
+}
+
 impl FrameCost {
     /// Adds the cost of what was drawn after this.
     pub(crate) fn then(self, other: Self) -> Self {
         Self {
             kernel: self.kernel + other.kernel,
             meshes: self.meshes + other.meshes,
+            crowds: self.crowds.both(other.crowds, |own, other| own + other),
             ..self.beside(other)
         }
     }
@@ -34,6 +62,7 @@ impl FrameCost {
         Self {
             kernel: self.kernel.max(other.kernel),
             meshes: self.meshes.max(other.meshes),
+            crowds: self.crowds.both(other.crowds, Duration::max),
             integrals: self.integrals + other.integrals,
             samples: self.samples + other.samples,
             launches: self.launches + other.launches,

@@ -78,7 +78,7 @@ pub mod verify;
 pub mod volume;
 mod wave;
 
-pub use cost::FrameCost;
+pub use cost::{CrowdCost, FrameCost};
 pub use error::{Cause, Error, ErrorKind, Result, SceneError};
 pub use glam; // whose vectors are in scenes
 pub use image::{DisplayImage, RadianceImage};
@@ -93,6 +93,6 @@ pub use opencl::{
 pub use opencl3; // whose handles hosts give
 #[cfg(feature = "files")]
 pub use output::TextFile;
-pub use render::{BakeError, Device, Devices, HostDepth, MappedImage, Renderer};
+pub use render::{BakeError, Device, Devices, HostDepth, HostPoints, MappedImage, Renderer};
 pub use scene::{Ray, Scene};
 pub use shown::{shown, shown_lines};

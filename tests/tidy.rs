@@ -273,6 +273,7 @@ fn unsafe_has_one_home() {
         "src/opencl/",
         "src/internals.rs",
         "src/render/host.rs",
+        "src/render/host_points.rs",
         "src/main.rs",
     ];
     for (path, text) in files("src", &["rs"]) {

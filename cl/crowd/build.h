@@ -4,7 +4,31 @@
 #include "nodes.h"
 #include "point.h"
 
-// Finds peak and level of LANES sources, from the light 3 and 48 pixels beside each.
+// Finds peak and level of sources at the slopes u and v, from the light 3 and 48 pixels beside each.
+INLINE void find_strength(const CrowdView *const view, const floatv own_u, const floatv own_v, const floatv z,
+                          floatv *const peak, floatv *const level) {
+    // Across the way to the middle, on which rays begin no farther from the eye.
+    const floatv off2 = fma(own_u, own_u, fma(own_v, own_v, splat(1e-12f)));
+    const floatv per_off = 0.5f * twice_inverse_sqrt_(off2);
+    const floatv way_u = (own_v + 1e-6f) * per_off, way_v = (1e-6f - own_u) * per_off;
+    const End end = whole_ray(view);
+    floatv light[2], core[2];
+    for (uint k = 0u; k < 2u; ++k) {
+        const float away = k == 0u ? 3.0f / 48.0f : 1.0f;
+        const floatv a = away * min(48.0f * view->step_u, 0.04f) * way_u;
+        const floatv b = away * min(48.0f * view->step_v, 0.04f) * way_v;
+        const Rays rays = rays_through(view, own_u + a, own_v + b);
+        const floatv c = fma(a, own_v, -b * own_u), beside2 = fma(a, a, fma(b, b, c * c));
+        const floatv per2 = rays.per_stretch * rays.per_stretch;
+        const floatv along = z * fma(rays.u, own_u, fma(rays.v, own_v, splat(1.0f))) * rays.per_stretch;
+        light[k] = light_beside(view, &end, rays.begin - along, z * z * beside2 * per2);
+        core[k] = core_of(view, beside2 * per2 / (1.0f + off2));
+    }
+    *peak = (light[0] - light[1]) / (core[0] - core[1]);
+    *level = fma(-*peak, core[1], light[1]);
+}
+
+// Finds peak and level of LANES sources.
 __kernel void find_peaks(const CrowdView view, __global const uint *const restrict cells,
                          __global float *const restrict sources) {
     const uint first = get_global_id(0) * LANES;
@@ -21,25 +45,9 @@ __kernel void find_peaks(const CrowdView view, __global const uint *const restri
     }
     const floatv own_u = LOAD_LANES(u), own_v = LOAD_LANES(v);
     const floatv t = gather(sources + 2, at), z = power_of_two(t * 1.44269504f);
-    // Across the way to the middle, on which rays begin no farther from the eye.
-    const floatv off2 = fma(own_u, own_u, fma(own_v, own_v, splat(1e-12f)));
-    const floatv per_off = 0.5f * twice_inverse_sqrt_(off2);
-    const floatv way_u = (own_v + 1e-6f) * per_off, way_v = (1e-6f - own_u) * per_off;
-    const End end = whole_ray(&view);
-    floatv light[2], core[2];
-    for (uint k = 0u; k < 2u; ++k) {
-        const float away = k == 0u ? 3.0f / 48.0f : 1.0f;
-        const floatv a = away * min(48.0f * view.step_u, 0.04f) * way_u;
-        const floatv b = away * min(48.0f * view.step_v, 0.04f) * way_v;
-        const Rays rays = rays_through(&view, own_u + a, own_v + b);
-        const floatv c = fma(a, own_v, -b * own_u), beside2 = fma(a, a, fma(b, b, c * c));
-        const floatv per2 = rays.per_stretch * rays.per_stretch;
-        const floatv along = z * fma(rays.u, own_u, fma(rays.v, own_v, splat(1.0f))) * rays.per_stretch;
-        light[k] = light_beside(&view, &end, rays.begin - along, z * z * beside2 * per2);
-        core[k] = core_of(&view, beside2 * per2 / (1.0f + off2));
-    }
-    const floatv found = (light[0] - light[1]) / (core[0] - core[1]);
-    scatter(found, peak), scatter(fma(-found, core[1], light[1]), level);
+    floatv strength, rest;
+    find_strength(&view, own_u, own_v, z, &strength, &rest);
+    scatter(strength, peak), scatter(rest, level);
     for (uint lane = 0u; lane < LANES && first + lane < view.sources; ++lane) {
         sources[8u * (first + lane) + 6u] = peak[lane];
         sources[8u * (first + lane) + 7u] = level[lane];

@@ -11,18 +11,31 @@
 // A closed form takes as long as so many limits.
 #define LIMITS_FOR_A_POINT 8u
 
-// Rays through the nodes of a tile, where they end, and their light up to each end.
+// Some of the ends of a tile.
+typedef struct {
+    uint first, end;
+} Ends;
+
+// Rays through the nodes of a tile, where they end, and their light up to each end. The ends of cut rays come before
+// that of whole ones; `cut` and `whole` are those that still take light.
 typedef struct {
     Rays rays[BATCHES];
-    uint end_count;
+    uint end_count, cut_count;
+    Ends cut, whole;
     End ends[MOST_ENDS];
     float3v light[MOST_ENDS * BATCHES];
 } NodesOfTile;
 
 #ifdef WITH_ENDS
 #define ENDS_OF(tile) (tile)->end_count
+#define CUT_OF(tile) (tile)->cut_count
+#define OPEN_CUT(tile) (tile)->cut
+#define OPEN_WHOLE(tile) (tile)->whole
 #else
 #define ENDS_OF(tile) 1u
+#define CUT_OF(tile) 0u
+#define OPEN_CUT(tile) ((Ends){0u, 0u})
+#define OPEN_WHOLE(tile) ((Ends){0u, 1u})
 #endif
 
 // What all cells have.
@@ -43,10 +56,10 @@ INLINE void add_light(float3v *const light, const floatv core, const float4 sour
     light->z = fma(core, splat(source.z), light->z);
 }
 
-// Adds the light of a point along a batch of rays, up to each end.
+// Adds the light of a point along a batch of rays, up to each of some ends.
 INLINE void add_point(const CrowdView *const view, const Rays *const rays, const Passing passing, const float4 source,
-                      const uint batch, NodesOfTile *const tile) {
-    for (uint end = 0u; end < ENDS_OF(tile); ++end) {
+                      const uint batch, const Ends ends, NodesOfTile *const tile) {
+    for (uint end = ends.first; end < ends.end; ++end) {
         const floatv light = light_beside(view, &tile->ends[end], rays->begin - passing.along, passing.least);
         add_light(&tile->light[end * BATCHES + batch], light, source);
     }
@@ -54,7 +67,7 @@ INLINE void add_point(const CrowdView *const view, const Rays *const rays, const
 
 // Adds the light of the sources of a cell, of each by itself.
 INLINE void add_sources(const CrowdView *const view, const Cells *const cells, const uint first, const uint end,
-                        const float angle, NodesOfTile *const tile) {
+                        const float angle, const Ends ends, NodesOfTile *const tile) {
     const float soft4 = angle * angle * angle * angle;
     for (uint index = first; index < end; ++index) {
         __global const CrowdSource *const source = cells->sources + index;
@@ -66,7 +79,7 @@ INLINE void add_sources(const CrowdView *const view, const Cells *const cells, c
         for (uint batch = 0u; batch < BATCHES; ++batch) {
             const Rays *const rays = &tile->rays[batch];
             const floatv beside2 = cross2(rays->u - u, rays->v - v, u, v);
-            add_point(view, rays, passing(rays, u, v, z, beside2, soft4 * far2 * far2), light, batch, tile);
+            add_point(view, rays, passing(rays, u, v, z, beside2, soft4 * far2 * far2), light, batch, ends, tile);
         }
     }
 }
@@ -75,6 +88,7 @@ INLINE void add_sources(const CrowdView *const view, const Cells *const cells, c
 INLINE void add_limits(const CrowdView *const view, const Cells *const cells, const uint at, const float half_side,
                        const float middle_u, const float middle_v, const float angle, NodesOfTile *const tile) {
     const uint n = view->nodes;
+    float3v *const light = tile->light + CUT_OF(tile) * BATCHES;
     const float soft4 = angle * angle * angle * angle;
     for (uint j = 0u; j < n; ++j) {
         const float v = fma(half_side * view->step_v, cells->numbers[CELL_NODES + j], middle_v);
@@ -87,62 +101,104 @@ INLINE void add_limits(const CrowdView *const view, const Cells *const cells, co
                 floatv sine2 = beside2 * rays->per_stretch * rays->per_stretch * per_length2;
                 if (angle > 0.0f)
                     sine2 = root(fma(sine2, sine2, splat(soft4)));
-                add_light(&tile->light[batch], core_of(view, sine2), cells->limits[at * n * n + j * n + i]);
+                add_light(&light[batch], core_of(view, sine2), cells->limits[at * n * n + j * n + i]);
             }
         }
     }
     for (uint batch = 0u; batch < BATCHES; ++batch)
-        add_light(&tile->light[batch], splat(1.0f), cells->levels[at]);
+        add_light(&light[batch], splat(1.0f), cells->levels[at]);
 }
 
-// Adds the light of a cell at the nodes of a tile, softened by an angle: by its limits, where rays are whole and the
-// cell is so small that it needs no depths, else by its nodes, or by its sources where they are fewer.
-INLINE void add_cell(const CrowdView *const view, const Cells *const cells, const uint level, const uint code,
-                     const float angle, const bool is_whole, NodesOfTile *const tile) {
-    const uint n = view->nodes, depths = view->depths;
-    const float half_side = (float)(4u << level);
-    const float column = (2.0f * (float)every_other(code) + 1.0f) * half_side;
-    const float row = (2.0f * (float)every_other(code >> 1) + 1.0f) * half_side;
-    const float middle_u = slope_u(view, column), middle_v = slope_v(view, row);
-    const uint first = cells->starts[code << (2u * level)], end = cells->starts[(code + 1u) << (2u * level)];
-    const bool has_limits = is_whole && level < view->shallow;
-    const uint fewest = has_limits ? n * n / LIMITS_FOR_A_POINT : level >= view->base ? n * n * depths : UINT_MAX;
-    if (end - first <= fewest) {
-        add_sources(view, cells, first, end, angle, tile);
-        return;
-    }
-    const uint at = cells_below(view, level) + code;
-    if (has_limits) {
-        add_limits(view, cells, at, half_side, middle_u, middle_v, angle, tile);
-        return;
-    }
+// Where the nodes of a cell are: the first of them, the middle of the cell, and its half side in pixels.
+typedef struct {
+    uint from;
+    float half_side, u, v;
+} Place;
+
+// Adds the light of the nodes of a cell.
+INLINE void add_nodes(const CrowdView *const view, const Cells *const cells, const Place place, const float angle,
+                      const bool is_whole, const Ends ends, NodesOfTile *const tile) {
+    const uint n = view->nodes, depths = is_whole ? view->whole_depths : view->depths;
     const float soft4 = angle * angle * angle * angle;
-    const uint from = (at - cells_below(view, view->base)) * n * n * depths;
     for (uint j = 0u; j < n; ++j) {
-        const float v = fma(half_side * view->step_v, cells->numbers[CELL_NODES + j], middle_v);
+        const float v = fma(place.half_side * view->step_v, cells->numbers[CELL_NODES + j], place.v);
         for (uint i = 0u; i < n; ++i) {
-            const float u = fma(half_side * view->step_u, cells->numbers[CELL_NODES + i], middle_u);
+            const float u = fma(place.half_side * view->step_u, cells->numbers[CELL_NODES + i], place.u);
             const float length2 = fma(u, u, fma(v, v, 1.0f));
+            __global const float4 *const column = cells->nodes + place.from + j * n + i;
+#ifdef WITH_ENDS
+            // Whole rays need fewer depths: light at others is laid on those.
+            float4 laid[MOST_DEPTHS];
+            for (uint q = 0u; q < depths; ++q) {
+                laid[q] = is_whole ? (float4)(0.0f) : column[q * n * n];
+                for (uint from = 0u; is_whole && from < view->depths; ++from)
+                    laid[q] += cells->numbers[DEPTH_WEIGHTS + q * MOST_DEPTHS + from] * column[from * n * n];
+            }
+#endif
             for (uint batch = 0u; batch < BATCHES; ++batch) {
                 const Rays *const rays = &tile->rays[batch];
                 const floatv beside2 = cross2(rays->u - u, rays->v - v, u, v);
                 for (uint q = 0u; q < depths; ++q) {
+#ifdef WITH_ENDS
+                    const float4 light = laid[q];
+#else
+                    const float4 light = column[q * n * n];
+#endif
 #ifdef ONE_DEPTH
                     const float z = cells->numbers[DEPTHS_THEMSELVES]; // spoiled
 #else
-                    const float z = cells->numbers[DEPTHS_THEMSELVES + q];
+                    const float z = cells->numbers[(is_whole ? WHOLE_DEPTHS : DEPTHS_THEMSELVES) + q];
+#endif
+#ifdef LIMITS_ALWAYS // spoiled
+                    floatv peak, level;
+                    find_strength(view, splat(u), splat(v), splat(z), &peak, &level);
+                    floatv sine2 = beside2 * rays->per_stretch * rays->per_stretch / length2;
+                    sine2 = root(fma(sine2, sine2, splat(soft4)));
+                    for (uint end = ends.first; end < ends.end; ++end)
+                        add_light(&tile->light[end * BATCHES + batch], fma(peak, core_of(view, sine2), level), light);
+                    continue;
 #endif
                     const float far2 = z * z * length2;
-                    const Passing it = passing(rays, u, v, z, beside2, soft4 * far2 * far2);
-                    add_point(view, rays, it, cells->nodes[from + (q * n + j) * n + i], batch, tile);
+                    add_point(view, rays, passing(rays, u, v, z, beside2, soft4 * far2 * far2), light, batch, ends,
+                              tile);
                 }
             }
         }
     }
 }
 
+// Adds the light of a cell at the nodes of a tile, softened by an angle: to whole rays by its limits, where the cell is
+// so small that it needs no depths; else by its nodes, or by its sources where they are fewer.
+INLINE void add_cell(const CrowdView *const view, const Cells *const cells, const uint level, const uint code,
+                     const float angle, NodesOfTile *const tile) {
+    const uint n = view->nodes, at = cells_below(view, level) + code;
+    Place place;
+    place.half_side = (float)(4u << level);
+    place.u = slope_u(view, (2.0f * (float)every_other(code) + 1.0f) * place.half_side);
+    place.v = slope_v(view, (2.0f * (float)every_other(code >> 1) + 1.0f) * place.half_side);
+    place.from = (at - cells_below(view, view->base)) * n * n * view->depths;
+    const uint first = cells->starts[code << (2u * level)], end = cells->starts[(code + 1u) << (2u * level)];
+    const Ends cut = OPEN_CUT(tile), whole = OPEN_WHOLE(tile);
+    if (cut.end > 0u) {
+        if (level < view->base || end - first <= n * n * view->depths)
+            add_sources(view, cells, first, end, angle, cut, tile);
+        else
+            add_nodes(view, cells, place, angle, false, cut, tile);
+    }
+    if (whole.first == whole.end)
+        return;
+    const bool has_limits = level < view->shallow;
+    if (end - first <= (has_limits ? n * n / LIMITS_FOR_A_POINT : n * n * view->whole_depths))
+        add_sources(view, cells, first, end, angle, whole, tile);
+    else if (has_limits)
+        add_limits(view, cells, at, place.half_side, place.u, place.v, angle, tile);
+    else
+        add_nodes(view, cells, place, angle, true, whole, tile);
+}
+
 // Adds the light of sources beside the grid, or near the eye, at the nodes of a tile.
 INLINE void add_rest(const CrowdView *const view, __global const float *const restrict rest, NodesOfTile *const tile) {
+    const Ends all = {0u, ENDS_OF(tile)};
     for (uint index = 0u; index < view->rest; ++index) {
         const float x = rest[6u * index], y = rest[6u * index + 1u], z = rest[6u * index + 2u];
         const float4 light = (float4)(rest[6u * index + 3u], rest[6u * index + 4u], rest[6u * index + 5u], 0.0f);
@@ -153,7 +209,7 @@ INLINE void add_rest(const CrowdView *const view, __global const float *const re
             const floatv least = fma(a, a, fma(b, b, c * c)) * rays->per_stretch * rays->per_stretch;
             const floatv along = fma(splat(x), rays->u, fma(splat(y), rays->v, splat(z))) * rays->per_stretch;
             const Passing it = {least, along};
-            add_point(view, rays, it, light, batch, tile);
+            add_point(view, rays, it, light, batch, all, tile);
         }
     }
 }

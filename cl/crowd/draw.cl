@@ -8,9 +8,18 @@
 // Rays of pixels end where each does, or all are whole.
 #ifdef WITH_ENDS
 #define END_VECTORS VECTORS
+#define HAS_VECTOR(vectors, vector) ((vectors) >> (vector)&1ul)
 #else
 #define END_VECTORS 1u
+#define HAS_VECTOR(vectors, vector) 1ul
 #endif
+
+// Which vectors of an open tile take the sources next to it by the form of near ones, and which by the closed form; of
+// those, the lanes that do.
+typedef struct {
+    ulong near, closed;
+    intv lanes[END_VECTORS];
+} Taking;
 
 // Returns the integral of 1 / sqrt(x^2 + y^2 + t^2) over a rectangle from the origin.
 INLINE floatv square_from_origin(const floatv x, const floatv y, const float t) {
@@ -52,7 +61,8 @@ INLINE floatv down_of(const uint vector) {
 
 // Adds a source next to a tile of 8 pixels, x and y from the middle of the tile, to its pixels.
 INLINE void add_near(const CrowdView *const view, __global const CrowdSource *const source, const float x,
-                     const float y, const float column, const float row, float3v *const light, float3v *const sum) {
+                     const float y, const float column, const float row, const ulong vectors, float3v *const light,
+                     float3v *const sum) {
     const float u = slope_u(view, column + x), v = slope_v(view, row + y);
     const float stretch2 = fma(u, u, fma(v, v, 1.0f)), per2 = 1.0f / stretch2;
     const float east = view->step_u * view->step_u * fma(v, v, 1.0f) * per2;
@@ -63,6 +73,8 @@ INLINE void add_near(const CrowdView *const view, __global const CrowdSource *co
     if (view->thickness > 0.0f) {
         const float width = sqrt(east), height = sqrt(south);
         for (uint vector = 0u; vector < VECTORS; ++vector) {
+            if (HAS_VECTOR(vectors, vector) == 0ul)
+                continue;
             const floatv right = right_of(vector) - x, down = down_of(vector) - y;
             const floatv q = fma(right, fma(splat(east), right, both * down), south * down * down);
             add_light(&light[vector], mean_core(view, right, down, width, height, q, least), peak);
@@ -70,6 +82,8 @@ INLINE void add_near(const CrowdView *const view, __global const CrowdSource *co
     } else if (view->is_square) {
 #pragma unroll
         for (uint vector = 0u; vector < VECTORS; ++vector) {
+            if (HAS_VECTOR(vectors, vector) == 0ul)
+                continue;
             const floatv right = right_of(vector) - x, down = down_of(vector) - y;
             const floatv q = fma(right, fma(splat(east), right, both * down), south * down * down);
             add_light(&light[vector], twice_inverse_sqrt_(max(q, least)), 0.5f * peak);
@@ -77,6 +91,8 @@ INLINE void add_near(const CrowdView *const view, __global const CrowdSource *co
     } else {
 #pragma unroll
         for (uint vector = 0u; vector < VECTORS; ++vector) {
+            if (HAS_VECTOR(vectors, vector) == 0ul)
+                continue;
             const floatv right = right_of(vector) - x, down = down_of(vector) - y;
             const floatv q = fma(right, fma(splat(east), right, both * down), south * down * down);
             add_light(&light[vector], binary_logarithm(max(q, least)), -LN_2 * peak);
@@ -88,7 +104,8 @@ INLINE void add_near(const CrowdView *const view, __global const CrowdSource *co
 // The same by the whole closed form, where pixels are so wide that a source's strength changes from one to the next. In
 // a pixel that is a mean, a core is rounded off in the closed form, and what is missing comes from the other.
 INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *const source, const float x,
-                      const float y, const float column, const float row, const End *const ends, float3v *const light) {
+                      const float y, const float column, const float row, const Taking *const taking,
+                      const End *const ends, float3v *const light) {
     const float u = slope_u(view, column + x), v = slope_v(view, row + y), z = exp(source->t);
     const float stretch2 = fma(u, u, fma(v, v, 1.0f)), per2 = 1.0f / stretch2;
     const float width = view->step_u * sqrt(fma(v, v, 1.0f) * per2),
@@ -96,6 +113,8 @@ INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *c
     const float round2 = view->thickness > 0.0f ? 0.25f * width * height : 0.0f;
     const float4 own = (float4)(source->red, source->green, source->blue, 0.0f);
     for (uint vector = 0u; vector < VECTORS; ++vector) {
+        if (HAS_VECTOR(taking->closed, vector) == 0ul)
+            continue;
         const floatv right = right_of(vector), down = down_of(vector);
         const Rays rays = rays_through(view, fma(splat(view->step_u), right, splat(slope_u(view, column))),
                                        fma(splat(view->step_v), down, splat(slope_v(view, row))));
@@ -103,11 +122,15 @@ INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *c
         const floatv q = beside2 * per2, rounded = max(q, round2);
         const Passing it = passing(&rays, u, v, z, rounded * stretch2, 0.0f);
         const End *const end = &ends[vector % END_VECTORS];
-        add_light(&light[vector], light_beside(view, end, rays.begin - it.along, it.least), own);
+        floatv here = light_beside(view, end, rays.begin - it.along, it.least);
+#ifdef WITH_ENDS
+        here = select(splat(0.0f), here, taking->lanes[vector]);
+#endif
+        add_light(&light[vector], here, own);
         intv is_core = q < 9.0f * width * height;
         if (view->thickness > 0.0f && any_lane(is_core)) {
 #ifdef WITH_ENDS
-            is_core &= rays.begin + end->length > it.along;
+            is_core &= (rays.begin + end->length > it.along) & taking->lanes[vector];
 #endif
             const floatv mean = mean_core(view, right - x, down - y, width, height, q, source->level);
             const floatv more = (mean - core_of(view, rounded)) * (view->is_square ? rays.stretch : splat(1.0f));
@@ -119,7 +142,7 @@ INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *c
 // Adds the sources around an open tile, in their order.
 INLINE void add_around(const CrowdView *const view, __global const uint *const starts,
                        __global const CrowdSource *const sources, __global const float4 *const levels, const uint code,
-                       const bool has_near_form, const End *const ends, float3v *const light,
+                       const Taking *const taking, const End *const ends, float3v *const light,
                        __global uint *const counts) {
     const uint column = every_other(code), row = every_other(code >> 1), across = cells_across(view, 0u);
     const float middle_x = (float)(8u * column + 4u), middle_y = (float)(8u * row + 4u);
@@ -134,18 +157,21 @@ INLINE void add_around(const CrowdView *const view, __global const uint *const s
             const float from_x = 8.0f * ((float)x - (float)column), from_y = 8.0f * ((float)y - (float)row);
             for (uint index = starts[cell]; index < starts[cell + 1u]; ++index) {
                 __global const CrowdSource *const source = sources + index;
-                if (has_near_form)
-                    add_near(view, source, source->x + from_x, source->y + from_y, middle_x, middle_y, near, &sum);
-                else
-                    add_whole(view, source, source->x + from_x, source->y + from_y, middle_x, middle_y, ends, light);
+                const float right = source->x + from_x, below = source->y + from_y;
+                if (taking->near != 0ul)
+                    add_near(view, source, right, below, middle_x, middle_y, taking->near, near, &sum);
+                if (taking->closed != 0ul)
+                    add_whole(view, source, right, below, middle_x, middle_y, taking, ends, light);
             }
             looked_at += starts[cell + 1u] - starts[cell];
             add_light(&level, splat(1.0f), levels[cell]);
         }
     atomic_add(counts + COUNTED_PAIRS, looked_at);
-    if (!has_near_form)
+    if (taking->near == 0ul)
         return;
     for (uint vector = 0u; vector < VECTORS; ++vector) {
+        if (HAS_VECTOR(taking->near, vector) == 0ul)
+            continue;
         const uintv place = vector * LANES + LANE_NUMBERS;
         const floatv u = fma(splat(view->step_u), to_floatv(place & 7u) - 3.5f, splat(slope_u(view, middle_x)));
         const floatv v = fma(splat(view->step_v), to_floatv(place >> 3) - 3.5f, splat(slope_v(view, middle_y)));
@@ -230,7 +256,10 @@ __kernel void draw_crowd(const FilmPart part, const CrowdView view, __global con
 #ifdef WITH_ENDS
     __global const float *const row_of_ends = ends_of_tiles + ROW_OF_ENDS * slot;
     intv is_dark[VECTORS];
+    Taking taking = {0ul, 0ul, {(intv)(0)}};
+    const intv none = (intv)(0);
 #endif
+    const uint is_open = tiles[slot].is_open;
     for (uint vector = 0u; vector < VECTORS; ++vector) {
         const uintv place = vector * LANES + LANE_NUMBERS;
         floatv across[4], down[4];
@@ -246,18 +275,22 @@ __kernel void draw_crowd(const FilmPart part, const CrowdView view, __global con
         ends[vector] = end_at(&view, share);
         light[vector] = light_up_to(&view, row_of_ends, value, across, down, share);
         is_dark[vector] = share <= 0.0f;
+        const intv is_cut = share < 1.0f;
+        taking.lanes[vector] = (is_open & CUT_OPEN ? is_cut : none) | (is_open & WHOLE_OPEN ? share >= 1.0f : none);
+        const bool is_near = view.has_near_form && is_open & WHOLE_OPEN && !any_lane(is_cut);
+        taking.near |= (is_near ? 1ul : 0ul) << vector;
+        taking.closed |= (!is_near && any_lane(taking.lanes[vector]) ? 1ul : 0ul) << vector;
 #else
         light[vector] = light_within(value, across, down);
 #endif
     }
 #ifndef WITH_ENDS
     ends[0] = whole_ray(&view);
-    const bool is_near = view.has_near_form;
-#else
-    const bool is_near = view.has_near_form && as_uint(row_of_ends[ROW_OF_ENDS - 1u]) == WHOLE_BIT;
+    const ulong near = view.has_near_form ? ~0ul : 0ul;
+    const Taking taking = {near, ~near, {(intv)(0)}};
 #endif
-    if (tiles[slot].is_open != 0u)
-        add_around(&view, starts, sources, levels, code, is_near, ends, light, counts);
+    if (is_open != 0u)
+        add_around(&view, starts, sources, levels, code, &taking, ends, light, counts);
 #ifdef WITH_ENDS
     for (uint vector = 0u; vector < VECTORS; ++vector) {
         light[vector].x = select(light[vector].x, splat(0.0f), is_dark[vector]);

@@ -6,6 +6,13 @@
 // Writes the weights of a place for n nodes.
 INLINE void weights_at(__global const float *const numbers, const uint nodes, const uint n, const float x,
                        float *const weights) {
+#ifdef TWO_NODES // spoiled: as if a cell had two along each side
+    if (nodes == CELL_NODES) {
+        for (uint i = 0u; i < n; ++i)
+            weights[i] = fma(2.0f * x, numbers[nodes + i], 1.0f) / (float)n;
+        return;
+    }
+#endif
     float product = 1.0f;
     for (uint i = 0u; i < n; ++i) {
         weights[i] = product * numbers[FACTORS + nodes + i];

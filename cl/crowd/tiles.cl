@@ -17,6 +17,11 @@
 #define CAUTION 1.0f
 #endif
 
+// Cut rays see less light, and behind depths light changes at every edge: more may be misplaced.
+#ifndef CAUTION_OF_CUT
+#define CAUTION_OF_CUT 0.2f
+#endif
+
 // Writes the light at the nodes of a tile, of one end, that its parent has at its own.
 void inherit(__global const float *const numbers, const float *const parent, const uint code, float *const light) {
     __global const float *const across = numbers + QUARTER_WEIGHTS + 16u * (code & 1u);
@@ -87,7 +92,8 @@ float4 least_light(const NodesOfTile *const tile, const uint end) {
 
 // Returns whether the light of the cells around a tile may be misplaced within them.
 INLINE bool is_enough(const CrowdView *const view, const Cells *const cells, const uint level, const uint column,
-                      const uint row, const float angle, const float *const ends, const NodesOfTile *const tile) {
+                      const uint row, const float angle, const float *const ends, const Ends some, const float caution,
+                      const NodesOfTile *const tile) {
 #ifdef ENOUGH_ALWAYS
     return true; // spoiled
 #endif
@@ -105,7 +111,7 @@ INLINE bool is_enough(const CrowdView *const view, const Cells *const cells, con
 #ifdef WITH_ENDS
     // Rays that end before all of the block see no cores.
     float4 least = (float4)(INFINITY);
-    for (uint end = 0u; end < ENDS_OF(tile); ++end) {
+    for (uint end = some.first; end < some.end; ++end) {
         const float z = fma(view->ray_length, ends[end], view->near_plane);
         if (z * fma(4.0f, angle, 1.0f) >= exp(nearest))
             least = fmin(least, view->tolerance * least_light(tile, end));
@@ -113,7 +119,7 @@ INLINE bool is_enough(const CrowdView *const view, const Cells *const cells, con
 #else
     const float4 least = view->tolerance * least_light(tile, 0u);
 #endif
-    const float spread = CAUTION * (view->is_square ? 1.0f / angle : 1.0f);
+    const float spread = caution * (view->is_square ? 1.0f / angle : 1.0f);
     const float of_one = view->is_square ? 20.0f / angle : -2.0f * log(0.05f * angle);
     const float most = max(least.x, max(least.y, least.z));
     const float share = view->is_square ? 10.0f : 1.0f;
@@ -159,12 +165,15 @@ __kernel void light_tiles(const CrowdView view, const uint level, const uint fir
             ends_of_tiles[ROW_OF_ENDS * slot + k] = ends[k];
         for (uint end = 0u; end < tile.end_count; ++end)
             tile.ends[end] = end_at(&view, splat(ends[end]));
-        const bool is_whole = as_uint(ends[ROW_OF_ENDS - 1u]) == WHOLE_BIT;
+        tile.cut_count = tile.end_count - as_uint(ends[ROW_OF_ENDS - 1u]) / WHOLE_BIT;
+        const uint was_open = level == view.top ? WHOLE_OPEN | CUT_OPEN : tiles[tiles[slot].parent].is_open;
+        const uint is_whole = was_open & WHOLE_OPEN, is_cut = was_open & CUT_OPEN;
+        tile.cut.first = 0u, tile.cut.end = is_cut ? tile.cut_count : 0u;
+        tile.whole.first = tile.cut_count, tile.whole.end = is_whole ? tile.end_count : tile.cut_count;
 #else
         const float ends[1] = {1.0f};
-        tile.end_count = 1u;
+        tile.end_count = 1u, tile.cut_count = 0u;
         tile.ends[0] = whole_ray(&view);
-        const bool is_whole = true;
 #endif
         for (uint end = 0u; end < ENDS_OF(&tile); ++end) {
             float parent[3u * NODES], inherited[3u * NODES];
@@ -203,21 +212,38 @@ __kernel void light_tiles(const CrowdView view, const uint level, const uint fir
                 const uint cell = code_of(x, y);
                 if (is_near || is_empty_cell(&cells, level, cell))
                     continue;
-                add_cell(&view, &cells, level, cell, 0.0f, is_whole, &tile);
+                add_cell(&view, &cells, level, cell, 0.0f, &tile);
                 ++looked_at;
             }
         if (is_top)
             add_rest(&view, rest, &tile);
 
-        const bool is_done = is_enough(&view, &cells, level, column, row, angle, ends, &tile);
-        if (is_done) {
+            // Rays that need no more take what is around the tile, softened; those that do, wait for its quarters.
+#ifdef WITH_ENDS
+        const Ends cut = tile.cut, whole = tile.whole;
+        const bool is_cut_open = cut.end > 0u && !is_enough(&view, &cells, level, column, row, angle, ends, cut,
+                                                            CAUTION_OF_CUT * CAUTION, &tile);
+        const bool is_whole_open = whole.end > whole.first &&
+                                   !is_enough(&view, &cells, level, column, row, angle, ends, whole, CAUTION, &tile);
+        const uint is_open = (is_whole_open ? WHOLE_OPEN : 0u) | (is_cut_open ? CUT_OPEN : 0u);
+        tile.cut.end = is_cut_open ? 0u : cut.end;
+        tile.whole.end = is_whole_open ? whole.first : whole.end;
+        const bool has_closed = tile.cut.end > 0u || tile.whole.end > tile.whole.first;
+#else
+        const uint is_open =
+            is_enough(&view, &cells, level, column, row, angle, ends, OPEN_WHOLE(&tile), CAUTION, &tile) ? 0u
+                                                                                                         : WHOLE_OPEN;
+        const bool has_closed = is_open == 0u;
+#endif
+        const bool is_done = is_open == 0u;
+        if (has_closed) {
 #ifndef NO_BLOCK_LIGHT
             for (uint y = max(row, block) - block; y < min(row + block + 1u, across); ++y)
                 for (uint x = max(column, block) - block; x < min(column + block + 1u, across); ++x) {
                     const uint cell = code_of(x, y);
                     if (is_empty_cell(&cells, level, cell))
                         continue;
-                    add_cell(&view, &cells, level, cell, SOFTENING * angle, is_whole, &tile);
+                    add_cell(&view, &cells, level, cell, SOFTENING * angle, &tile);
                     ++looked_at;
                 }
 #endif
@@ -232,7 +258,7 @@ __kernel void light_tiles(const CrowdView view, const uint level, const uint fir
                 STORE_LANES(light->z, value + 2u * NODES + batch * LANES);
             }
         }
-        tiles[slot].code = code, tiles[slot].level = level, tiles[slot].is_open = is_done ? 0u : 1u;
+        tiles[slot].code = code, tiles[slot].level = level, tiles[slot].is_open = is_open;
 
         // The tiles of 8 pixels in it, as far as the image goes, belong to it; or its quarters follow.
         const uint left = view.left >> 3, above = view.above >> 3;

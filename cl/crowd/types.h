@@ -40,7 +40,7 @@ typedef struct {
     uint is_along_axis; // depths are lengths along the axis of view
     float slab_begin;   // the share of rays at which slabs begin
     float per_slab;     // slabs by the share
-    uint padding;
+    uint whole_depths;  // of a cell, for whole rays
 } CrowdView;
 CHECK_SIZE(CrowdView, SIZEOF_CROWDVIEW);
 
@@ -54,12 +54,15 @@ typedef struct {
 } CrowdSource;
 CHECK_SIZE(CrowdSource, SIZEOF_CROWDSOURCE);
 
-// An open or finished tile: its Morton code, the slot of the tile that it is a quarter of, and its level. Where a tile
-// of the lowest level was not finished, it is open.
+// An open or finished tile: its Morton code, the slot of the tile that it is a quarter of, its level, and which of its
+// rays need more light than the tile has: whole ones, and those that are cut.
 typedef struct {
     uint code, parent, level, is_open;
 } CrowdTile;
 CHECK_SIZE(CrowdTile, SIZEOF_CROWDTILE);
+
+#define WHOLE_OPEN 1u
+#define CUT_OPEN 2u
 
 // Numbers that all kernels look up: nodes, then factors of the weights, each of a tile, a cell, and depths.
 #define TILE_NODES 0u
@@ -67,6 +70,8 @@ CHECK_SIZE(CrowdTile, SIZEOF_CROWDTILE);
 #define DEPTH_NODES 16u
 #define FACTORS 32u
 #define DEPTHS_THEMSELVES 96u
+#define WHOLE_DEPTHS 112u
+#define DEPTH_WEIGHTS 128u  // [one for whole rays][MOST_DEPTHS]
 #define QUARTER_WEIGHTS 64u // [side of the parent][node of the tile][node of the parent]
 
 // Counts: of the tiles of each level, and of what they looked at.

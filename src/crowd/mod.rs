@@ -13,6 +13,7 @@ mod sources;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::ops::Range;
+use std::time::Instant;
 
 use opencl3::event::Event;
 
@@ -23,7 +24,7 @@ use crate::opencl::{
     Argument, Compute, Film, FilmFormat, Handle, Kernel, RawMemory, RendererOptions,
     UploadedShared, run_time,
 };
-use crate::scene::{Camera, CrowdSight, Integration, List, Points, Profile, Scene};
+use crate::scene::{Camera, CrowdSight, Integration, Points, Profile, Scene};
 use buffers::{Buffers, NODES_OF_TILE};
 use kernels::Kernels;
 pub(crate) use kernels::build_text;
@@ -56,14 +57,22 @@ pub(crate) struct Crowd {
     depths: UploadedShared<f32>,
     /// Whether tiles have the light of the last plan.
     is_lit: bool,
-    under_way: Vec<Handle<Event>>,
+    under_way: Vec<(Stage, Handle<Event>)>,
     cost: FrameCost,
 }
 
-/// What decides how points are seen and sorted.
+/// What a launch belongs to.
+#[derive(Debug, Clone, Copy)]
+enum Stage {
+    Cells,
+    Tiles,
+    Pixels,
+}
+
+/// What decides how points are seen and sorted. Of the lists themselves, which may be a host's, nothing is kept.
 #[derive(Debug, Clone, PartialEq)]
 struct Known {
-    points: List<Points>,
+    points: Vec<(u64, Points)>,
     camera: Camera,
     image: ImageSize,
     integration: Integration,
@@ -137,7 +146,7 @@ impl Crowd {
         }
         let sight = CrowdSight::new(scene)?;
         let known = Known {
-            points: scene.points.clone(),
+            points: scene.points.iter().map(Points::stamp).collect(),
             camera: scene.camera.clone(),
             image: scene.image,
             integration: scene.integration,
@@ -146,6 +155,7 @@ impl Crowd {
             Some((same, sorted)) if *same == known => *sorted,
             _ => {
                 self.known = None;
+                let begun = Instant::now();
                 let sorted = self.sorter.see(scene, &sight, self.profile);
                 let (sorter, buffers) = (&self.sorter, &mut self.buffers);
                 let count = sorted.sources as usize;
@@ -156,6 +166,7 @@ impl Crowd {
                 })??;
                 buffers.starts.write(compute, &sorter.starts)?;
                 buffers.rest.write(compute, &sorter.rest)?;
+                self.cost.crowds.sorting = begun.elapsed();
                 self.known = Some((known, sorted));
                 sorted
             }
@@ -233,7 +244,12 @@ impl Crowd {
             ("ends_of_tiles", buffers.ends.argument()),
         ];
         arguments.extend(drawn.named());
-        enqueue.launch(&kernels.draw, &arguments, (end - first) as usize)
+        enqueue.launch(
+            Stage::Pixels,
+            &kernels.draw,
+            &arguments,
+            (end - first) as usize,
+        )
     }
 
     /// Waits for what is under way, and adds up what it cost.
@@ -242,10 +258,16 @@ impl Crowd {
     /// [`Error::Device`](crate::Error::Device) if a launch failed.
     pub(crate) fn settle(&mut self, compute: &Compute) -> Result<()> {
         let mut outcome = Ok(());
-        for event in self.under_way.drain(..) {
+        let crowds = &mut self.cost.crowds;
+        for (stage, event) in self.under_way.drain(..) {
             match run_time(compute, &event) {
                 Ok(time) => {
                     self.cost.kernel += time;
+                    *match stage {
+                        Stage::Cells => &mut crowds.cells,
+                        Stage::Tiles => &mut crowds.tiles,
+                        Stage::Pixels => &mut crowds.pixels,
+                    } += time;
                 }
                 Err(error) => outcome = outcome.and(Err(error)),
             }
@@ -272,12 +294,13 @@ struct Enqueue<'a> {
     buffers: &'a Buffers,
     lanes: u32,
     group: usize,
-    under_way: &'a mut Vec<Handle<Event>>,
+    under_way: &'a mut Vec<(Stage, Handle<Event>)>,
 }
 
 impl Enqueue<'_> {
     fn launch(
         &mut self,
+        stage: Stage,
         kernel: &Kernel,
         arguments: &[(&str, &dyn Argument)],
         items: usize,
@@ -289,7 +312,7 @@ impl Enqueue<'_> {
             .collect();
         let group = kernel.group(self.compute, self.group)?;
         let event = kernel.launch(self.compute, &arguments, items.max(1), group)?;
-        self.under_way.push(event);
+        self.under_way.push((stage, event));
         Ok(())
     }
 
@@ -301,6 +324,7 @@ impl Enqueue<'_> {
             let shares = ("shares", buffers.shares.argument());
             let tiles = view.tile_columns * view.height.div_ceil(8);
             self.launch(
+                Stage::Tiles,
                 find_ends,
                 &[("depths", depths), shares, ranges],
                 tiles as usize,
@@ -317,10 +341,16 @@ impl Enqueue<'_> {
         let counts = ("counts", buffers.counts.argument());
         let is_wanted = ("is_wanted", buffers.is_wanted.argument());
         let all = view.cells_below(view.top + 1);
-        self.launch(&kernels.clear, &[counts, is_wanted], all.max(COUNTS))?;
-        let items = (view.sources as usize).div_ceil(self.lanes as usize);
-        self.launch(&kernels.find_peaks, &[codes, sources], items)?;
         self.launch(
+            Stage::Cells,
+            &kernels.clear,
+            &[counts, is_wanted],
+            all.max(COUNTS),
+        )?;
+        let items = (view.sources as usize).div_ceil(self.lanes as usize);
+        self.launch(Stage::Cells, &kernels.find_peaks, &[codes, sources], items)?;
+        self.launch(
+            Stage::Cells,
             &kernels.sum_cells,
             &[starts, sources, peaks, levels],
             cells(0),
@@ -328,6 +358,7 @@ impl Enqueue<'_> {
         for level in 1..=view.top {
             let level_argument = ("level", &level as &dyn Argument);
             self.launch(
+                Stage::Cells,
                 &kernels.sum_quarters,
                 &[level_argument, peaks, levels],
                 cells(level),
@@ -338,10 +369,10 @@ impl Enqueue<'_> {
         let laid = [
             base, is_deep, starts, codes, sources, numbers, is_wanted, nodes,
         ];
-        self.launch(&kernels.lay_sources, &laid, cells(view.base))?;
+        self.launch(Stage::Cells, &kernels.lay_sources, &laid, cells(view.base))?;
         for level in view.base + 1..=view.top {
             let laid = [("level", &level as &dyn Argument), starts, numbers, nodes];
-            self.launch(&kernels.lay_quarters, &laid, cells(level))?;
+            self.launch(Stage::Cells, &kernels.lay_quarters, &laid, cells(level))?;
         }
         let mut first = 0_u32;
         let limits = ("limits", buffers.limits.argument());
@@ -352,7 +383,7 @@ impl Enqueue<'_> {
                 let laid = [
                     argument, is_flat, starts, codes, sources, numbers, is_wanted, nodes,
                 ];
-                self.launch(&kernels.lay_sources, &laid, cells(level))?;
+                self.launch(Stage::Cells, &kernels.lay_sources, &laid, cells(level))?;
             }
             let tiles = view.tile_count(level);
             let next = first + tiles as u32;
@@ -378,7 +409,7 @@ impl Enqueue<'_> {
                 ranges,
                 ("ends_of_tiles", buffers.ends.argument()),
             ];
-            self.launch(&kernels.light_tiles, &arguments, tiles)?;
+            self.launch(Stage::Tiles, &kernels.light_tiles, &arguments, tiles)?;
             first = next;
         }
         Ok(())

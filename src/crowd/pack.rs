@@ -43,7 +43,7 @@ device_struct! {
         is_along_axis: u32 = 128,
         slab_begin: f32 = 132,
         per_slab: f32 = 136,
-        padding: u32 = 140,
+        whole_depths: u32 = 140,
     }
 }
 
@@ -99,7 +99,9 @@ const DEPTH_NODES: usize = 16;
 const FACTORS: usize = 32;
 const QUARTER_WEIGHTS: usize = 64;
 const DEPTHS_THEMSELVES: usize = 96;
-const NUMBERS: usize = 112;
+const WHOLE_DEPTHS: usize = 112;
+const DEPTH_WEIGHTS: usize = 128;
+const NUMBERS: usize = 384;
 
 /// What is known of a crowd once its sources are sorted.
 #[derive(Debug, Clone, Copy)]
@@ -171,6 +173,7 @@ pub(super) fn view(
         sorted.sources >= MANY && 8.0 * pixel * f64::from(2 * block + 1) < WIDEST_OF_MANY;
     let depths = (2.5 + 2.0 * (high - low)).ceil() as u32 + more + u32::from(is_square);
     let shallow = sight.base(block);
+    let whole_depths = depths;
     let (base, depths) = match along {
         None => (shallow, depths),
         Some(_) => {
@@ -221,7 +224,7 @@ pub(super) fn view(
         is_along_axis: u32::from(!matches!(along, None | Some(DepthAlong::Ray))),
         slab_begin: begin as f32,
         per_slab: (SLABS_INSIDE / (end - begin).max(1e-3)) as f32,
-        padding: 0,
+        whole_depths: whole_depths.clamp(4, MOST_DEPTHS as u32),
     })
 }
 
@@ -307,13 +310,23 @@ impl CrowdView {
             let share = |(_, other): (usize, &f64)| (place - other) / (nodes[parents] - other);
             *weight = others.map(share).product::<f64>() as f32;
         }
-        for (node, depth) in numbers[DEPTH_NODES..FACTORS]
-            .to_vec()
-            .iter()
-            .zip(&mut numbers[DEPTHS_THEMSELVES..])
-        {
-            let t = f64::from(self.middle_t) + f64::from(self.half_t) * f64::from(*node);
-            *depth = t.exp() as f32;
+        let depth = |node: f64| {
+            let t = f64::from(self.middle_t) + f64::from(self.half_t) * node;
+            t.exp() as f32
+        };
+        let deep = chebyshev(self.depths as usize);
+        let whole = chebyshev(self.whole_depths as usize);
+        for (at, nodes) in [(DEPTHS_THEMSELVES, &deep), (WHOLE_DEPTHS, &whole)] {
+            for (number, node) in numbers[at..].iter_mut().zip(nodes) {
+                *number = depth(*node);
+            }
+        }
+        for (q, own) in whole.iter().enumerate() {
+            for (from, node) in deep.iter().enumerate() {
+                let others = whole.iter().enumerate().filter(|(other, _)| *other != q);
+                let weight: f64 = others.map(|(_, it)| (node - it) / (own - it)).product();
+                numbers[DEPTH_WEIGHTS + q * MOST_DEPTHS + from] = weight as f32;
+            }
         }
         numbers
     }

@@ -164,13 +164,12 @@ impl Piece {
         let side = f64::from((8 * sight.across) << sight.top);
         let per_step = sight.step.map(|step| 1.0 / step);
         let farthest = 1.001 * NEAREST * sight.near;
-        let positions = points.points.positions();
         for index in self.points.clone() {
             let light = points.light(index);
             if light.max_element() > limit || light == DVec3::ZERO {
                 continue;
             }
-            let [x, y, z] = sight.seen(positions[index]);
+            let [x, y, z] = sight.seen(points.points.position(index));
             if z < farthest && sight.is_at_plane([x, y, z]) {
                 continue;
             }

@@ -2,7 +2,8 @@
 
 use opencl3::error_codes::{self as codes, ClError, error_text};
 
-use crate::error::Error;
+use super::host::unfit;
+use crate::error::{Error, Result};
 
 /// Turns the error code of a failed call into an error that names device, call and what to do.
 pub(super) fn failed<'a>(
@@ -82,4 +83,12 @@ fn advice(code: i32) -> &'static str {
         codes::CL_DEVICE_NOT_AVAILABLE => "the device is in use or switched off",
         _ => "update the device's driver, or choose another device",
     }
+}
+
+/// Turns the answer to a question about something of the host's into a result.
+pub(super) fn asked<T>(object: &'static str, answer: std::result::Result<T, ClError>) -> Result<T> {
+    answer.map_err(|ClError(code)| {
+        let code = code_name(code);
+        unfit(object, format_args!("OpenCL does not know it ({code})"))
+    })
 }

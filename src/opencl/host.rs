@@ -5,6 +5,7 @@
 //! markers is put on the host's queue.
 
 use std::fmt::Display;
+use std::sync::Arc;
 
 use opencl3::command_queue::{CommandQueue, retain_command_queue};
 use opencl3::context::{Context, context::retain_context};
@@ -20,7 +21,7 @@ use opencl3::types::{cl_command_queue, cl_context, cl_event, cl_mem};
 use super::Compute;
 use super::copies::state;
 use super::discover::device_of;
-use super::failure::failed;
+use super::failure::{asked, failed};
 use super::film::{Film, FilmFormat, halves_of};
 use super::handle::Handle;
 use super::host_image::{ImageCopy, ImageInPlace};
@@ -60,14 +61,6 @@ pub(crate) fn unfit(object: &'static str, reason: impl Display) -> Error {
     }
 }
 
-/// Turns the answer to a question about something of the host's into a result.
-pub(super) fn asked<T>(object: &'static str, answer: std::result::Result<T, ClError>) -> Result<T> {
-    answer.map_err(|ClError(code)| {
-        let code = super::failure::code_name(code);
-        unfit(object, format_args!("OpenCL does not know it ({code})"))
-    })
-}
-
 /// A host's queue, tied to our own.
 #[derive(Debug)]
 pub(crate) struct HostLink {
@@ -75,11 +68,13 @@ pub(crate) struct HostLink {
     /// It may be a part of a device.
     _device: Handle<SubDevice>,
     /// Commands that nobody waited for: PoCL 3.1 aborts when an event fails that was released before it was over.
-    held: Vec<Handle<Event>>,
+    pub(super) held: Vec<Handle<Event>>,
     /// Whether the driver built no kernels that write images.
     copies_images: bool,
     /// The buffer that was copied to an image last.
     copy: Option<ImageCopy>,
+    /// Where the host's points are read.
+    pub(super) reading: Option<Arc<Compute>>,
 }
 
 /// A frame for a host that has begun.
@@ -127,6 +122,7 @@ impl HostLink {
             held: Vec::new(),
             copies_images: false,
             copy: None,
+            reading: None,
         };
         Ok((Compute::in_context(context, &device)?, link))
     }

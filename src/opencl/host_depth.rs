@@ -9,8 +9,9 @@ use opencl3::memory::{
 use opencl3::types::cl_mem;
 
 use super::Compute;
+use super::failure::asked;
 use super::handle::Handle;
-use super::host::{HostTarget, asked, retained, unfit};
+use super::host::{HostTarget, retained, unfit};
 use crate::error::Result;
 
 /// A host's memory that holds a depth for every pixel.

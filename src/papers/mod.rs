@@ -24,7 +24,7 @@ pub use table_2010::{Cell2010, PAPER_CPU_FPS, TABLE_2010, camera_2010, single_th
 pub use table_2013::{Cell2013, Speed2013, TABLE_2013};
 pub use times::Times;
 
-use crate::cost::FrameCost;
+use crate::cost::{CrowdCost, FrameCost};
 use crate::error::{Error, Result};
 use crate::image::{Difference, ImageSize, RadianceImage, compare};
 use crate::opencl::RendererOptions;
@@ -184,14 +184,15 @@ fn measure_frames(renderer: &mut Renderer, scenes: &[Scene], time: Duration) -> 
     }
     let mut frames = Vec::new();
     let mut kernels = Vec::new();
-    let mut last = 0;
+    let (mut last, mut cost) = (0, FrameCost::default());
     let begun = Instant::now();
     while begun.elapsed() < time || frames.len() < 3 {
         last = frames.len() % scenes.len();
         let frame_begun = Instant::now();
         renderer.render_mapped(&scenes[last])?;
         frames.push(frame_begun.elapsed());
-        kernels.push(renderer.last_cost().kernel);
+        cost = renderer.last_cost();
+        kernels.push(cost.kernel);
     }
     image
         .as_mut_slice()
@@ -201,7 +202,7 @@ fn measure_frames(renderer: &mut Renderer, scenes: &[Scene], time: Duration) -> 
         fps: times.fps(),
         times,
         kernel: Times::of(kernels)?.median,
-        cost: renderer.last_cost(),
+        cost,
         frame: last as u32,
         image,
     })
@@ -239,6 +240,7 @@ pub fn exact_cost(device: &Device, scene: &Scene) -> Result<FrameCost> {
         samples: sum.samples / u64::from(COUNTED_FRAMES),
         kernel: sum.kernel / COUNTED_FRAMES,
         meshes: sum.meshes / COUNTED_FRAMES,
+        crowds: CrowdCost::default(),
         launches: sum.launches / COUNTED_FRAMES,
     })
 }

@@ -24,8 +24,9 @@ pub fn light_of_points_up_to(scene: &Scene, rays: &[(Ray, f64)]) -> Vec<[f64; 3]
         for (light, (ray, end)) in chunk {
             let mut sum = DVec3::ZERO;
             for points in scene.points.iter() {
-                for (index, point) in points.points.positions().iter().enumerate() {
-                    let here = along(ray, *end, *point, points.profile, scene.decay);
+                for index in 0..points.points.len() {
+                    let point = points.points.position(index);
+                    let here = along(ray, *end, point, points.profile, scene.decay);
                     sum += points.light(index) * here;
                 }
             }

@@ -102,7 +102,7 @@ impl Renderer {
 
     /// # Safety
     /// As [`Renderer::enqueue_behind`].
-    unsafe fn enqueue_frame(
+    pub(super) unsafe fn enqueue_frame(
         &mut self,
         scene: &Scene,
         target: HostTarget,

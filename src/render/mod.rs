@@ -7,6 +7,7 @@ mod device;
 mod engines;
 mod host;
 mod host_depth;
+mod host_points;
 mod irradiance;
 mod joined;
 mod layers;
@@ -28,6 +29,7 @@ use std::time::Instant;
 
 pub use device::{Device, Devices};
 pub use host_depth::HostDepth;
+pub use host_points::HostPoints;
 
 use crate::cost::FrameCost;
 use crate::error::{Error, Result};

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use super::one::Rows;
-use crate::cost::FrameCost;
+use crate::cost::{CrowdCost, FrameCost};
 use crate::error::Result;
 use crate::image::spread_light;
 use crate::reference;
@@ -47,6 +47,7 @@ pub(super) fn reference_cost(scene: &Scene, pixels: usize, time: Duration) -> Fr
     FrameCost {
         kernel: time,
         meshes: Duration::ZERO,
+        crowds: CrowdCost::default(),
         integrals,
         samples: integrals * u64::from(samples),
         launches: 1,

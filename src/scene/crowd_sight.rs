@@ -135,7 +135,7 @@ impl Points {
         is_point
             && self.points.least_light() * self.coefficient >= 0.0
             && self.coefficient >= 0.0
-            && (self.points.lights().is_some() || self.color.min_element() >= 0.0)
+            && (self.points.has_lights() || self.color.min_element() >= 0.0)
     }
 
     /// Returns whether some of them may be around the plane where rays begin.
@@ -150,9 +150,9 @@ impl Points {
     /// Returns the light of all, and of the brightest: of each the brightest channel.
     fn total(&self) -> (f64, f64) {
         let (sum, most) = self.points.total_light();
-        let of_all = match self.points.lights() {
-            Some(_) => self.coefficient,
-            None => self.coefficient * self.color.max_element(),
+        let of_all = match self.points.has_lights() {
+            true => self.coefficient,
+            false => self.coefficient * self.color.max_element(),
         };
         (of_all * sum, of_all * most)
     }
@@ -170,9 +170,9 @@ impl Scene {
         let limit = self.crowd_limit(profile);
         let is_near = |it: &&Points| it.profile == profile && it.is_around_plane(sight);
         for points in self.points.iter().filter(is_near) {
-            for (index, point) in points.points.positions().iter().enumerate() {
+            for index in 0..points.points.len() {
                 let is_dim = || points.light(index).max_element() <= limit;
-                if sight.is_at_plane(sight.seen(*point)) && is_dim() {
+                if sight.is_at_plane(sight.seen(points.points.position(index))) && is_dim() {
                     spheres.push(points.sphere(index));
                 }
             }

@@ -64,17 +64,26 @@ impl Points {
         }
     }
 
+    /// Returns what tells them from others: the revision of the list, and all but the list.
+    pub(crate) fn stamp(&self) -> (u64, Self) {
+        let others = Self {
+            points: PointList::default(),
+            ..*self
+        };
+        (self.points.revision(), others)
+    }
+
     /// Returns the light of a point: linear RGB times all that it is multiplied with.
     pub(crate) fn light(&self, index: usize) -> DVec3 {
         let weight = self.points.sizes().map_or(1.0, |it| it[index].weight);
-        let own = self.points.lights().map(|it| it[index].map(f64::from));
+        let own = self.points.own_light(index).map(|it| it.map(f64::from));
         self.coefficient * weight * own.map_or(self.color, DVec3::from)
     }
 
     /// Returns a point as a source of its own.
     pub(crate) fn sphere(&self, index: usize) -> Sphere {
         Sphere {
-            center: self.points.positions()[index],
+            center: self.points.position(index),
             coefficient: 1.0,
             color: self.light(index),
             profile: self.profile,

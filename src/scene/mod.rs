@@ -85,6 +85,7 @@ pub use mesh::{Mesh, TriangleList};
 pub(crate) use metaballs::{AMBIENT, LAMP};
 pub use metaballs::{MetaballKernel, MetaballMethod, MetaballSampling, MetaballShading, Metaballs};
 pub use particles::Particles;
+pub(crate) use points::PointRows;
 pub use points::{Lattice, PointList, PointSize};
 #[cfg(feature = "files")]
 pub use preset::Preset;

@@ -9,4 +9,5 @@ mod depths; // ends rays at depths in a host's own buffer or image
 mod frames; // draws both
 #[allow(clippy::module_inception)] // the module says what it tests, as in the other programs
 mod host; // draws into a host's buffers and images, on its queue, after its events
+mod points; // draws points of light in a host's own buffers
 mod surfaces; // draws frames that are put together of surfaces and light

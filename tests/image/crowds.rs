@@ -230,6 +230,8 @@ fn every_spoiled_build_of_crowds_is_found() {
         "-D NO_BLOCK_LIGHT",
         "-D BLOCK(view)=0u",
         "-D MIDDLES_ONLY",
+        "-D TWO_NODES",
+        "-D LIMITS_ALWAYS",
     ] {
         let mut renderer = common::renderer(common::device().lanes, spoiled);
         let mut is_found = false;

@@ -10,6 +10,7 @@ mod lit;
 mod npy;
 #[cfg(feature = "files")]
 mod ply;
+mod rows;
 
 use std::fmt;
 use std::path::Path;
@@ -20,6 +21,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 pub use lattice::Lattice;
+use rows::Places;
+pub(crate) use rows::PointRows;
 
 use super::list::new_revision;
 use super::values::LARGEST;
@@ -43,7 +46,7 @@ const MOST_POINTS: usize = 1 << 27;
 pub struct PointList(Arc<Points>);
 
 struct Points {
-    positions: Vec<DVec3>,
+    places: Places,
     sizes: Option<Vec<PointSize>>,
     lights: Option<Vec<[f32; 3]>>,
     /// Least light, the sum of all, and the greatest: of each the brightest channel.
@@ -175,12 +178,15 @@ impl PointList {
         if let Some(lights) = &lights {
             check_lights(positions.len(), lights).map_err(fault)?;
         }
-        let positions_len = positions.len();
+        let light = match &lights {
+            Some(lights) => rows::light_of(lights.len(), |index| lights[index]),
+            None => [1.0, positions.len() as f64, 1.0],
+        };
         Ok(Self(Arc::new(Points {
             revision: new_revision(),
-            positions,
+            places: Places::Own(positions),
             sizes,
-            light: light_of(positions_len, lights.as_deref()),
+            light,
             lights,
             low,
             high,
@@ -191,7 +197,7 @@ impl PointList {
     /// Returns the positions, world units.
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {
-        &self.0.positions
+        self.0.places.listed()
     }
 
     /// Returns radii and weights, if the particles have some of their own.
@@ -220,13 +226,13 @@ impl PointList {
     /// Returns the number of particles.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.0.positions.len()
+        self.0.places.len()
     }
 
     /// Returns whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.0.positions.is_empty()
+        self.0.places.len() == 0
     }
 
     /// Returns the corners of the box around all positions; of no particle, the origin twice.
@@ -283,21 +289,6 @@ fn check_sizes(count: usize, sizes: &[PointSize]) -> std::result::Result<(), Str
     Ok(())
 }
 
-fn light_of(count: usize, lights: Option<&[[f32; 3]]>) -> [f64; 3] {
-    let Some(lights) = lights else {
-        return [1.0, count as f64, 1.0];
-    };
-    let mut found = [0.0_f64, 0.0, 0.0];
-    for light in lights {
-        let [red, green, blue] = light.map(f64::from);
-        let most = red.max(green).max(blue);
-        found[0] = found[0].min(red.min(green).min(blue));
-        found[1] += most.max(0.0);
-        found[2] = found[2].max(most);
-    }
-    found
-}
-
 fn check_lights(count: usize, lights: &[[f32; 3]]) -> std::result::Result<(), String> {
     if lights.len() != count {
         let found = lights.len();
@@ -325,7 +316,7 @@ impl fmt::Debug for PointList {
 impl Default for PointList {
     fn default() -> Self {
         Self(Arc::new(Points {
-            positions: Vec::new(),
+            places: Places::Own(Vec::new()),
             sizes: None,
             lights: None,
             light: [0.0; 3],
@@ -343,7 +334,10 @@ impl PartialEq for PointList {
         let (own, others) = (&self.0, &other.0);
         let is_same = Arc::ptr_eq(own, others) || own.revision == others.revision;
         let is_light_same = own.lights == others.lights;
-        is_same || (own.positions == others.positions && own.sizes == others.sizes && is_light_same)
+        let listed = [own, others].map(|it| it.places.listed());
+        let is_listed = [own, others].map(|it| it.places.len()) == listed.map(<[_]>::len);
+        is_same
+            || (is_listed && listed[0] == listed[1] && own.sizes == others.sizes && is_light_same)
     }
 }
 
