@@ -13,7 +13,7 @@ use energywave::image::ImageSize;
 use energywave::scene::{
     Camera, Measure, Profile, Sphere, Torus, Volume, VolumeInterpolation, VolumeMethod,
 };
-use energywave::volume::{CellValue, Grid, Storage, Texture};
+use energywave::volume::{Grid, Storage, Texture};
 use energywave::{Renderer, Scene};
 use plotters::prelude::*;
 

@@ -25,8 +25,8 @@ impl Scene {
         }
     }
 
-    /// Returns what cells are best given whose reciprocals are stored: apart what lies beside the strongest source, where
-    /// there are several and no two share a core, else the emission in their middles.
+    /// Returns what cells are best given whose reciprocals are stored: apart what all but the strongest source give,
+    /// where there are several and no two share a core, else the emission in their middles.
     #[must_use]
     pub fn reciprocal_cell_value(&self) -> CellValue {
         let sources = self.source_count();

@@ -26,8 +26,8 @@ pub enum VolumeFormat {
         /// Whether values are halves.
         half: bool,
     },
-    /// `.nrrd`, float32 RGB, or one number for light of one colour, dense; of reciprocals beside a rest, which follows in
-    /// every cell, twice as many.
+    /// `.nrrd`, float32 RGB, or one number for light of one colour, dense; where a rest stands beside reciprocals, in
+    /// each cell that follows.
     Nrrd,
     /// `.vti`, VTK image data: the cell data `emission`, float32 RGB, or `density`, one number for light of one colour,
     /// dense.
