@@ -348,8 +348,14 @@ fn opengl_finds_the_irradiance_of_points_and_lines_as_the_reference_does() {
 #[test]
 fn blocks_that_are_too_large_are_refused_by_the_table_that_fills_them() {
     let many = "[[sphere]]\nradius = 0.1\n".repeat(513);
-    let scene = Scene::from_toml(&format!("{HEAD}[[cylinder]]\n{many}")).unwrap();
-    for (entry, key) in [(Entry::Function, "sphere[0]"), (Entry::Irradiance, "[509]")] {
+    let scene = Scene::from_toml(&format!(
+        "{HEAD}[[cylinder]]\npoint = [0, 0, 0]\ndirection = [0, 0, 1]\n{many}"
+    ))
+    .unwrap();
+    for (entry, key) in [
+        (Entry::Function, "sphere[0]"),
+        (Entry::Irradiance, "sphere[512]"),
+    ] {
         let refused = export(&scene, Language::Wgsl, entry)
             .unwrap_err()
             .to_string();
