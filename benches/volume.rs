@@ -109,12 +109,10 @@ fn twenty_sources() -> Scene {
     scene
 }
 
-fn bake(renderer: &mut Renderer, scene: &Scene) -> energywave::volume::Volume {
+fn bake(renderer: &mut Renderer, scene: &Scene, value: CellValue) -> energywave::volume::Volume {
     let grid = Grid::new(DVec3::ZERO, DVec3::splat(2.0), CELLS).unwrap();
     let progress = &mut |_: f32| ControlFlow::Continue(());
-    renderer
-        .bake(scene, grid, CellValue::Center, progress)
-        .unwrap()
+    renderer.bake(scene, grid, value, progress).unwrap()
 }
 
 fn main() {
@@ -122,19 +120,24 @@ fn main() {
     let cores = device.compute_units.max(1);
     println!("{}", common::header(&device, "cargo bench --bench volume"));
     let scene = twenty_sources();
-    bake(&mut renderer, &scene);
-    let took = spent(cores, || drop(bake(&mut renderer, &scene)));
+    bake(&mut renderer, &scene, CellValue::Center);
+    let took = spent(cores, || {
+        drop(bake(&mut renderer, &scene, CellValue::Center))
+    });
     println!(
         "bake of {CELLS}^3 cells from 20 sources: {:.2} s, {:.2} s of each core\n",
         took.clock, took.core
     );
     let scene = ring_and_point();
-    let volume = bake(&mut renderer, &scene);
+    let volume = bake(&mut renderer, &scene, CellValue::Center);
     println!(
         "| 512x512 from {CELLS}^3 cells | channels | ms | ms of each core | FPS of the cores |\n\
          |---|---|---|---|---|"
     );
-    let only = std::env::args().skip(1).find(|it| !it.starts_with('-'));
+    let table = Table {
+        only: std::env::args().skip(1).find(|it| !it.starts_with('-')),
+        cores,
+    };
     for (color, channels) in [(scene.one_color(), 1), (None, 3)] {
         for storage in [Storage::Emission, Storage::Reciprocal { power: 2 }] {
             let mut texture = Texture::of(&volume, storage, color).unwrap();
@@ -143,21 +146,42 @@ fn main() {
             }
             for interpolation in [VolumeInterpolation::Linear, VolumeInterpolation::Cubic] {
                 let name = format!("{storage:?}, {interpolation:?}");
-                let label = format!("{name} {channels}");
-                if only
-                    .as_ref()
-                    .is_some_and(|only| !label.contains(only.as_str()))
-                {
-                    continue;
-                }
-                let took = frames(&mut renderer, cores, &texture, interpolation);
-                let (clock, core) = (1e3 * took.clock, 1e3 * took.core);
-                println!(
-                    "| {name} | {channels} | {clock:.0} | {core:.0} | {:.1} |",
-                    1e3 / core
-                );
+                table.row(&mut renderer, &name, &texture, interpolation);
             }
         }
+    }
+    let apart = bake(&mut renderer, &scene, CellValue::Apart);
+    let texture = Texture::of(&apart, scene.reciprocal(), scene.one_color()).unwrap();
+    let name = "Reciprocal beside a rest, Cubic";
+    table.row(&mut renderer, name, &texture, VolumeInterpolation::Cubic);
+}
+
+/// Which rows are printed, and of how many cores.
+struct Table {
+    only: Option<String>,
+    cores: u32,
+}
+
+impl Table {
+    fn row(
+        &self,
+        renderer: &mut Renderer,
+        name: &str,
+        texture: &Texture,
+        interpolation: VolumeInterpolation,
+    ) {
+        let channels = texture.channels();
+        let label = format!("{name} {channels}");
+        let is_other = |only: &String| !label.contains(only.as_str());
+        if self.only.as_ref().is_some_and(is_other) {
+            return;
+        }
+        let took = frames(renderer, self.cores, texture, interpolation);
+        let (clock, core) = (1e3 * took.clock, 1e3 * took.core);
+        println!(
+            "| {name} | {channels} | {clock:.0} | {core:.0} | {:.1} |",
+            1e3 / core
+        );
     }
 }
 

@@ -13,7 +13,7 @@ use energywave::image::ImageSize;
 use energywave::scene::{
     Camera, Measure, Profile, Sphere, Torus, Volume, VolumeInterpolation, VolumeMethod,
 };
-use energywave::volume::{CellValue, Grid, Storage, Texture};
+use energywave::volume::{Grid, Storage, Texture};
 use energywave::{Renderer, Scene};
 use plotters::prelude::*;
 
@@ -49,7 +49,7 @@ fn row(renderer: &mut Renderer, profile: Profile, cells: u32) {
     let grid = grid(cells);
     let progress = &mut |_: f32| ControlFlow::Continue(());
     let volume = renderer
-        .bake(&scene, grid, CellValue::Center, progress)
+        .bake(&scene, grid, scene.reciprocal_cell_value(), progress)
         .unwrap();
     for storage in [Storage::Emission, scene.reciprocal()] {
         let texture = Texture::of(&volume, storage, scene.one_color()).unwrap();

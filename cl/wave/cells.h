@@ -15,8 +15,8 @@ INLINE void KIND_add_to_row(const Cells *const cells, const Ray *const ray, cons
         }
         if (!any_lane(light != 0.0f)) // beyond its reach
             continue;
-        add_lanes(row + x, emission.x * light);
-        add_lanes(row + x + cells->plane, emission.y * light);
-        add_lanes(row + x + 2 * cells->plane, emission.z * light);
+        add_to_cells(cells, row + x, emission.x * light);
+        add_to_cells(cells, row + x + cells->plane, emission.y * light);
+        add_to_cells(cells, row + x + 2 * cells->plane, emission.z * light);
     }
 }

@@ -68,17 +68,18 @@ CHECK_SIZE(RayRecord, SIZEOF_RAYRECORD);
 
 // Cells of a grid, some of its layers.
 typedef struct {
-    float4 first; // the lowest corner, seen from the middle of the grid
-    float step;   // the edge of a cell
-    float floor2; // no squared distance to a core is taken below this
-    float share;  // of a place in its cell
-    uint parts;   // places along an edge of a cell, in the middles of as many pieces
-    uint columns; // cells of a row
-    uint rows;    // rows of a layer
-    uint count;   // rows in all
-    uint stride;  // from a row to the next
-    uint plane;   // from a channel to the next
-    uint padding0, padding1, padding2;
+    float4 first;  // the lowest corner, seen from the middle of the grid
+    float step;    // the edge of a cell
+    float floor2;  // no squared distance to a core is taken below this
+    float share;   // of a place in its cell
+    uint parts;    // places along an edge of a cell, in the middles of as many pieces
+    uint columns;  // cells of a row
+    uint rows;     // rows of a layer
+    uint count;    // rows in all
+    uint stride;   // from a row to the next
+    uint plane;    // from a channel to the next
+    uint channels; // 3; 6 with those of the light of all but the strongest source
+    uint padding0, padding1;
 } Cells;
 CHECK_SIZE(Cells, SIZEOF_CELLS);
 

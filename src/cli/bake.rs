@@ -46,7 +46,7 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
     };
     for (scene, grid, storage, file) in files {
         let begun = Instant::now();
-        let volume = baked(arguments, &mut renderer, &scene, grid)?;
+        let volume = baked(arguments, &mut renderer, &scene, (grid, storage))?;
         let took = begun.elapsed().as_secs_f64();
         if volume.bricks().next().is_none() {
             warn("all cells are black: no light reaches the box");
@@ -56,7 +56,7 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
             told(&volume),
             names(&devices)
         ));
-        warn_of_thin_cores(&scene, &volume);
+        warn_of_thin_cores(&scene, &volume, storage);
         let mut notes = vec![("scene".to_owned(), name.clone())];
         let error = match storage {
             Storage::Emission => renderer.bake_error(&scene, &volume)?,
@@ -80,9 +80,12 @@ pub fn run(arguments: &BakeArguments) -> Outcome {
 }
 
 /// Says where the middles of cells meet cores by chance.
-fn warn_of_thin_cores(scene: &Scene, volume: &Volume) {
+fn warn_of_thin_cores(scene: &Scene, volume: &Volume, storage: Storage) {
     let cell = volume.grid().cell();
-    if volume.value() == CellValue::Center && scene.is_thinner_than(cell) {
+    if storage == Storage::Emission
+        && volume.value() == CellValue::Center
+        && scene.is_thinner_than(cell)
+    {
         warn(&format!(
             "cells are {cell:.4} wide, and some core is thinner: it comes out as beads; more --cells help, or \
              --mean 4, which takes longer"
@@ -105,9 +108,10 @@ fn baked(
     arguments: &BakeArguments,
     renderer: &mut Renderer,
     scene: &Scene,
-    grid: Grid,
+    (grid, storage): (Grid, Storage),
 ) -> Result<Volume, Failure> {
     let value = match arguments.mean {
+        None if storage != Storage::Emission => scene.reciprocal_cell_value(),
         None => scene.cell_value(),
         Some(1) => CellValue::Center,
         Some(places) => CellValue::Mean(places),

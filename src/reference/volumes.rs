@@ -22,13 +22,8 @@ pub(super) struct Volumes {
 
 impl Volumes {
     pub(super) fn new(scene: &Scene, integrand: Integrand) -> Self {
-        let plane = scene.view_plane();
-        let seen = scene
-            .volumes
-            .iter()
-            .map(|it| it.as_seen(&plane).into_owned());
         Self {
-            list: seen.collect(),
+            list: Volume::all_as_seen(&scene.volumes, &scene.view_plane()),
             integrand,
         }
     }

@@ -25,6 +25,19 @@ impl Scene {
         }
     }
 
+    /// Returns what cells are best given whose reciprocals are stored: apart what all but the strongest source give,
+    /// where there are several and no two share a core, else the emission in their middles.
+    #[must_use]
+    pub fn reciprocal_cell_value(&self) -> CellValue {
+        let sources = self.source_count();
+        let mut is_bright = true;
+        self.for_each_emission(&mut |emission| is_bright &= emission.min_element() >= 0.0);
+        match sources > 1 && self.light_count() == sources && is_bright {
+            true => CellValue::Apart,
+            false => CellValue::Center,
+        }
+    }
+
     /// Returns whether any core is thinner than a cell with such an edge, world units: the middles of cells then meet
     /// it by chance.
     #[must_use]
@@ -113,18 +126,23 @@ fn bake_reference(
         let first = layer * BRICK;
         let height = BRICK.min(layers - first);
         let plane = columns * (rows * height) as usize;
-        let mut cells = vec![[0.0_f32; 3]; plane];
+        let mut cells = vec![[[0.0_f32; 3]; 2]; plane];
+        let is_apart = value == CellValue::Apart;
         threads::for_each_chunk(&mut cells, columns, |row, cells| {
             let (y, z) = (row as u32 % rows, first + row as u32 / rows);
             for (x, cell) in (0..).zip(cells) {
-                *cell = emitter
+                cell[0] = emitter
                     .in_cell(&grid, value, [x, y, z])
                     .as_vec3()
                     .to_array();
+                if is_apart {
+                    cell[1] = emitter.rest_in_cell(&grid, [x, y, z]).as_vec3().to_array();
+                }
             }
         });
-        let channel = |channel: usize| cells.iter().map(move |cell| cell[channel]);
-        let values: Vec<f32> = (0..3).flat_map(channel).collect();
+        let channel = |at: usize| cells.iter().map(move |cell| cell[at / 3][at % 3]);
+        let channels = if is_apart { 6 } else { 3 };
+        let values: Vec<f32> = (0..channels).flat_map(channel).collect();
         volume.add_layer(layer, &values, columns)?;
         if progress((first + height) as f32 / layers as f32).is_break() {
             return Err(Error::Interrupted);

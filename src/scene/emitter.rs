@@ -40,6 +40,8 @@ pub(crate) struct Emitter {
     pub light: [DVec3; 3],
     /// Within which its light grows no more, world units.
     pub radius: f64,
+    /// The table and the number of its source.
+    pub source: (&'static str, usize),
 }
 
 /// Hears a part of a core, and its light as that of [`Emitter`].
@@ -59,7 +61,10 @@ macro_rules! define_emitters {
             pub(crate) fn emitters(&self, lighting: &Lighting) -> Vec<Emitter> {
                 let mut emitters = Vec::new();
                 if lighting.cast {
-                    $(self.$list.iter().for_each(|source| add_emitters(source, lighting, &mut emitters));)*
+                    $(for (index, source) in self.$list.iter().enumerate() {
+                        let named = (source, (stringify!($kind), index));
+                        add_emitters(named, lighting, &mut emitters);
+                    })*
                 }
                 emitters
             }
@@ -68,7 +73,11 @@ macro_rules! define_emitters {
 }
 for_each_kind!(define_emitters);
 
-fn add_emitters<T: SourceKind>(source: &T, lighting: &Lighting, emitters: &mut Vec<Emitter>) {
+fn add_emitters<T: SourceKind>(
+    (source, name): (&T, (&'static str, usize)),
+    lighting: &Lighting,
+    emitters: &mut Vec<Emitter>,
+) {
     let of_size = |source: &T| match source.core().ball() {
         Some((_, radius)) if radius > 0.0 => OF_SIZE * 2.0 * radius,
         _ => WITHOUT_SIZE,
@@ -81,6 +90,7 @@ fn add_emitters<T: SourceKind>(source: &T, lighting: &Lighting, emitters: &mut V
                 core,
                 light,
                 radius,
+                source: name,
             });
         }
     });

@@ -189,7 +189,7 @@ macro_rules! define_scene {
             }
 
             /// Calls `add` with the emission of all parts of all sources.
-            fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
+            pub(crate) fn for_each_emission(&self, add: &mut dyn FnMut(DVec3)) {
                 $(self.$list.iter().for_each(|source| source.for_each_emission(add));)*
             }
 

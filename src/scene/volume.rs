@@ -85,7 +85,7 @@ impl Volume {
     }
 
     /// Returns what is drawn from a view: of a billboard, a thin plate that faces it.
-    pub(crate) fn as_seen(&self, plane: &ViewPlane) -> Cow<'_, Self> {
+    fn as_seen(&self, plane: &ViewPlane) -> Cow<'_, Self> {
         if self.shape == VolumeShape::Volume {
             return Cow::Borrowed(self);
         }
@@ -99,6 +99,21 @@ impl Volume {
             turned: Some(DMat3::from_cols(right, up.cross(right), up)),
             ..self.clone()
         })
+    }
+
+    /// Returns what is drawn of all volumes of a scene from a view, each without a rest: that is drawn as another.
+    pub(crate) fn all_as_seen(list: &[Self], plane: &ViewPlane) -> Vec<Self> {
+        let mut seen = Vec::with_capacity(list.len());
+        for volume in list {
+            let volume = volume.as_seen(plane).into_owned();
+            let rest = volume.texture.rest().map(|rest| Self {
+                texture: rest.clone().in_color(volume.texture.color()),
+                ..volume.clone()
+            });
+            seen.push(volume);
+            seen.extend(rest);
+        }
+        seen
     }
 
     /// Returns whether it is the plate of a billboard, which slices may miss.

@@ -167,7 +167,13 @@ impl Block {
                 "the lights of the scene take {bytes} bytes of a uniform block, which has {MOST_BYTES}: \
                  export fewer sources, or fewer layers, at a time"
             );
-            return Err(SceneError::value("", message).into());
+            // The table that takes most of it.
+            let ends = block.kinds.iter().skip(1).map(|it| it.first_byte);
+            let ends = ends.chain([size_of::<Row>() * block.rows.len()]);
+            let largest =
+                (block.kinds.iter().zip(ends)).max_by_key(|(it, end)| end - it.first_byte);
+            let key = largest.map_or(String::new(), |(it, _)| format!("{}[0]", it.name));
+            return Err(SceneError::value(key, message).into());
         }
         Ok(block)
     }

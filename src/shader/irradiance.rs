@@ -26,12 +26,12 @@ struct Casting {
 impl Casting {
     fn of(scene: &Scene) -> Result<Self> {
         scene.validate()?;
-        let refuse = |what: &str| -> Error {
+        let refuse = |what: &str, (table, index): (&str, usize)| -> Error {
             let message = format!(
                 "{what} has no irradiance in shaders, which have that of points and of straight lines: export a scene \
                  without it"
             );
-            SceneError::value("", message).into()
+            SceneError::value(format!("{table}[{index}]"), message).into()
         };
         let row = |v: DVec3, last: f64| [v.x as f32, v.y as f32, v.z as f32, last as f32];
         let mut casting = Self::default();
@@ -39,7 +39,7 @@ impl Casting {
             let [light, middle, end] = emitter.light;
             let radius2 = emitter.radius * emitter.radius;
             if (middle - light).length() + (end - light).length() > 1e-6 * light.length() {
-                return Err(refuse("light that changes along a core"));
+                return Err(refuse("light that changes along a core", emitter.source));
             }
             match emitter.core {
                 EmitterCore::Point(place) => {
@@ -66,15 +66,21 @@ impl Casting {
                         row(light, 0.0),
                     ]);
                 }
-                _ => return Err(refuse("a ring, an arc or a curve")),
+                _ => return Err(refuse("a ring, an arc or a curve", emitter.source)),
+            }
+            if casting.bytes() > MOST_BYTES {
+                let what = format!("what goes beyond {MOST_BYTES} bytes of a uniform block");
+                return Err(refuse(&what, emitter.source));
             }
         }
-        let bytes = size_of_val(&casting.points[..]) + size_of_val(&casting.lines[..]);
-        match bytes {
+        match casting.bytes() {
             0 => Err(SceneError::value("", "the scene has no core that casts light").into()),
-            1..=MOST_BYTES => Ok(casting),
-            _ => Err(refuse(&format!("a block of more than {MOST_BYTES} bytes"))),
+            _ => Ok(casting),
         }
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(&self.points[..]) + size_of_val(&self.lines[..])
     }
 
     fn counts(&self) -> Vec<usize> {

@@ -138,12 +138,11 @@ impl Textures {
         there: Option<(RawMemory, DepthAlong)>,
         form: Form,
     ) -> Result<TexturePlan> {
-        let make = || UploadedShared::new("the cells of a volume");
-        self.values.resize_with(scene.volumes.len(), make);
         let plane = scene.view_plane();
-        let seen: Vec<_> = scene.volumes.iter().map(|it| it.as_seen(&plane)).collect();
-        self.images
-            .resize_with(scene.volumes.len(), SharedImage::default);
+        let seen = Volume::all_as_seen(&scene.volumes, &plane);
+        let make = || UploadedShared::new("the cells of a volume");
+        self.values.resize_with(seen.len(), make);
+        self.images.resize_with(seen.len(), SharedImage::default);
         for (index, volume) in seen.iter().enumerate() {
             let texture = &volume.texture;
             let values = texture.values();
@@ -155,8 +154,7 @@ impl Textures {
             }
         }
         let method = scene.integration.volumes;
-        self.smooth
-            .resize_with(scene.volumes.len(), SmoothOnDevice::new);
+        self.smooth.resize_with(seen.len(), SmoothOnDevice::new);
         for (smooth, volume) in self.smooth.iter_mut().zip(&seen) {
             if pack::skips(volume, method) {
                 smooth.upload(compute, volume)?;

@@ -9,6 +9,7 @@ use super::smooth::{coarse_strides, has_bricks};
 use crate::image::DepthAlong;
 use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
 use crate::scene::{Scene, ViewPlane, Volume, VolumeInterpolation, VolumeMethod};
+use crate::threads::for_each_chunk;
 use crate::volume::Texture;
 
 device_struct! {
@@ -104,14 +105,14 @@ impl TextureVolume {
     pub(super) fn new(volume: &Volume, plane: &ViewPlane, method: VolumeMethod) -> Self {
         let texture = &volume.texture;
         let [columns, rows, layers] = texture.cells();
-        let [line, sheet] = strides(texture.cells());
+        let [line, sheet] = strides(texture.cells(), texture.channels());
         let to_cells = volume.to_cells();
         let middle = 0.5 * (DVec3::from(texture.cells().map(f64::from)) - 1.0);
         let from_eye = middle - to_cells * (volume.center - plane.eye);
         let row = |axis: usize| four(to_cells.row(axis), from_eye[axis]);
         let [red, green, blue] = volume.emission().as_vec3().to_array();
         let has_bricks = skips(volume, method);
-        let [coarse_line, coarse_sheet] = coarse_strides(texture.cells());
+        let [coarse_line, coarse_sheet] = coarse_strides(texture.cells(), texture.channels());
         let (slices, step) = match method {
             VolumeMethod::Ray { step } => (0, step),
             VolumeMethod::Slices { .. } if volume.is_plate() => (0, 1.0),
@@ -157,36 +158,64 @@ pub(super) fn skips(volume: &Volume, method: VolumeMethod) -> bool {
 /// Values of a cache line.
 const LINE: u32 = 16;
 
-/// Grids with shorter rows stay as they are.
+/// Grids with shorter rows stay as they are, but for rows of fewer cells than are loaded at once.
 const LONG: u32 = 64;
+const LEAST: u32 = 4;
 
 /// Returns what is between the values of one row and the next, and of one layer and the next: odd numbers of cache
 /// lines, because cells that are powers of 2 apart drive each other out of caches (256^3 cells of three channels are
 /// drawn 1.8 times as fast as without).
-pub(super) fn strides([columns, rows, _]: [u32; 3]) -> [u32; 2] {
+pub(super) fn strides([columns, rows, _]: [u32; 3], channels: u32) -> [u32; 2] {
     if columns < LONG {
-        return [columns, columns * rows];
+        let line = columns.max(LEAST);
+        return [line, line * rows];
     }
-    let line = LINE * (columns.div_ceil(LINE) | 1);
+    let cells = LINE / numbers(channels) as u32;
+    let line = cells * (columns.div_ceil(cells) | 1);
     [line, line * (rows | 1)]
 }
 
-/// Returns the values of all channels with such strides between them.
+/// Returns how many numbers a cell takes: of three channels one is to spare.
+pub(super) fn numbers(channels: u32) -> usize {
+    if channels == 3 { 4 } else { 1 }
+}
+
+/// Returns the values of all cells with such strides between them, the channels of a cell side by side. Rows go on with
+/// their last cell.
 pub(super) fn strided(texture: &Texture) -> Arc<Vec<f32>> {
-    let cells = texture.cells();
+    let (cells, channels) = (texture.cells(), texture.channels());
     let [columns, rows, layers] = cells.map(|it| it as usize);
-    let [line, sheet] = strides(cells).map(|it| it as usize);
-    if line == columns {
+    let [line, sheet] = strides(cells, channels).map(|it| it as usize);
+    if line == columns && channels == 1 {
         return Arc::clone(texture.values());
     }
-    let mut values = vec![0.0; sheet * layers * texture.channels() as usize];
-    let sheets = values
-        .chunks_exact_mut(sheet)
-        .zip(texture.values().chunks_exact(columns * rows));
-    for (to, from) in sheets {
-        for (to, from) in to.chunks_exact_mut(line).zip(from.chunks_exact(columns)) {
-            to[..columns].copy_from_slice(from);
+    let of_channels = texture.values().chunks_exact(columns * rows * layers);
+    Arc::new(side_by_side(
+        of_channels,
+        [columns, rows, layers],
+        [line, sheet],
+    ))
+}
+
+/// Does the same for the cells of each channel.
+pub(super) fn side_by_side<'a>(
+    channels: impl ExactSizeIterator<Item = &'a [f32]>,
+    [columns, rows, layers]: [usize; 3],
+    [line, sheet]: [usize; 2],
+) -> Vec<f32> {
+    let channels: Vec<&[f32]> = channels.collect();
+    let each = numbers(channels.len() as u32);
+    let mut values = vec![0.0; each * sheet * layers];
+    for_each_chunk(&mut values, each * sheet, |z, values| {
+        for (y, row) in values.chunks_exact_mut(each * line).take(rows).enumerate() {
+            for (channel, from) in channels.iter().enumerate() {
+                let from = &from[(z * rows + y) * columns..][..columns];
+                let last = std::iter::repeat(&from[columns - 1]);
+                for (cell, value) in row.chunks_exact_mut(each).zip(from.iter().chain(last)) {
+                    cell[channel] = *value;
+                }
+            }
         }
-    }
-    Arc::new(values)
+    });
+    values
 }

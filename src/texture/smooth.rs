@@ -11,7 +11,7 @@ use crate::scene::VolumeInterpolation;
 use crate::threads::for_each_chunk;
 use crate::volume::{Storage, Texture};
 
-use super::pack::strides;
+use super::pack::{side_by_side, strides};
 
 /// Cells of a brick along an edge, and of the grid of half as many.
 pub(super) const BRICK: usize = 8;
@@ -62,8 +62,8 @@ fn coarse_size(cells: [u32; 3]) -> [usize; 3] {
 }
 
 /// Returns what is between the values of one row and the next of the coarse grid, and of one layer and the next.
-pub(super) fn coarse_strides(cells: [u32; 3]) -> [u32; 2] {
-    strides(coarse_size(cells).map(|it| it as u32))
+pub(super) fn coarse_strides(cells: [u32; 3], channels: u32) -> [u32; 2] {
+    strides(coarse_size(cells).map(|it| it as u32), channels)
 }
 
 impl Smooth {
@@ -80,18 +80,20 @@ impl Smooth {
             (light, stored)
         });
         let fields: Vec<(Field, Option<Field>)> = fields.collect();
-        let [line, sheet] = coarse_strides(cells).map(|it| it as usize);
-        let [_, rows, layers] = coarse_size(cells);
-        let mut coarse = vec![0.0; fields.len() * sheet * layers];
+        let size = coarse_size(cells);
+        let [columns, rows, layers] = size;
+        let mut coarse = vec![0.0; fields.len() * columns * rows * layers];
         let bias = if is_linear { 1.0 / 48.0 } else { 0.0 };
-        for_each_chunk(&mut coarse, sheet, |number, sheet| {
+        for_each_chunk(&mut coarse, columns * rows, |number, sheet| {
             let (light, stored) = &fields[number / layers];
             let stored = stored.as_ref().unwrap_or(light);
-            for (y, row) in sheet.chunks_mut(line).take(rows).enumerate() {
+            for (y, row) in sheet.chunks_mut(columns).enumerate() {
                 let at = [y, number % layers];
                 light.without_what_interpolation_adds(stored, storage, bias, at, row);
             }
         });
+        let strides = coarse_strides(cells, texture.channels()).map(|it| it as usize);
+        let coarse = side_by_side(coarse.chunks_exact(columns * rows * layers), size, strides);
         let lights: Vec<&Field> = fields.iter().map(|(light, _)| light).collect();
         Self {
             of: Arc::clone(texture.values()),

@@ -35,13 +35,16 @@ pub enum CellValue {
     /// The mean of the emission in the middles of the cell's pieces, so many along each edge. Next to a core where
     /// light has no end, as without a radius, no distance is taken below half the edge of a piece.
     Mean(u32),
+    /// The emission at the middle of the cell, and apart that of all sources but the strongest: [`Volume::rest`], with
+    /// which reciprocals are exact where light of one source lies beside the core of another.
+    Apart,
 }
 
 impl CellValue {
     /// Returns how many places along an edge of a cell are looked at.
     pub(crate) fn parts(self) -> u32 {
         match self {
-            Self::Center => 1,
+            Self::Center | Self::Apart => 1,
             Self::Mean(parts) => parts,
         }
     }
@@ -50,7 +53,7 @@ impl CellValue {
     /// means, half the edge of a piece of a cell; else next to nothing.
     pub(crate) fn floor2(self, cell: f64) -> f64 {
         match self {
-            Self::Center => (1e-4 * cell).powi(2),
+            Self::Center | Self::Apart => (1e-4 * cell).powi(2),
             Self::Mean(parts) => (0.5 * cell / f64::from(parts)).powi(2),
         }
     }
@@ -63,6 +66,7 @@ pub struct Volume {
     value: CellValue,
     /// By their places, x fastest, then y, then z.
     bricks: Vec<Option<Brick>>,
+    rest: Option<Box<Volume>>,
 }
 
 impl Volume {
@@ -77,6 +81,10 @@ impl Volume {
             grid,
             value,
             bricks: vec![None; bricks],
+            rest: match value {
+                CellValue::Apart => Some(Self::new(grid, CellValue::Center)?.into()),
+                _ => None,
+            },
         })
     }
 
@@ -90,6 +98,13 @@ impl Volume {
     #[must_use]
     pub fn value(&self) -> CellValue {
         self.value
+    }
+
+    /// Returns the emission of all sources but the strongest, if it was asked for ([`CellValue::Apart`]): what passes
+    /// smoothly from one to the other where both are alike.
+    #[must_use]
+    pub fn rest(&self) -> Option<&Self> {
+        self.rest.as_deref()
     }
 
     /// Returns the bricks in which something glows, with their places along x, y and z, counted in bricks.
@@ -131,6 +146,22 @@ impl Volume {
         }
     }
 
+    /// Returns the rest that stands beside what is stored so, if there is one.
+    pub(crate) fn rest_beside(&self, storage: Storage) -> Option<&Self> {
+        self.rest().filter(|_| storage != Storage::Emission)
+    }
+
+    /// Writes what a row of cells stores into `row`, RGB after RGB: of reciprocals beside a rest, without that.
+    pub(crate) fn read_stored_row(&self, y: u32, z: u32, storage: Storage, row: &mut [f32]) {
+        self.read_row(y, z, row);
+        if let Some(rest) = self.rest_beside(storage) {
+            let mut others = vec![0.0; row.len()];
+            rest.read_row(y, z, &mut others);
+            row.iter_mut().zip(others).for_each(|(all, it)| *all -= it);
+        }
+        row.iter_mut().for_each(|it| *it = storage.stored(*it));
+    }
+
     /// Returns the largest emission of any cell and channel.
     #[must_use]
     pub fn greatest(&self) -> f32 {
@@ -144,7 +175,7 @@ impl Volume {
     }
 
     /// Adds a layer of bricks, the `layer`th along z: `values` are those of its cells, of which a row is `stride`
-    /// values long, all red ones first, then green, then blue.
+    /// values long, all red ones first, then green, then blue; then the same of the rest, where that is apart.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -152,6 +183,14 @@ impl Volume {
         let [columns, rows, layers] = self.grid.cells();
         let [brick_columns, brick_rows, _] = self.grid.bricks();
         let depth = (layers - layer * BRICK).min(BRICK);
+        let values = match &mut self.rest {
+            Some(rest) => {
+                let (all, of_rest) = values.split_at(values.len() / 2);
+                rest.add_layer(layer, of_rest, stride)?;
+                all
+            }
+            None => values,
+        };
         let plane = values.len() / 3;
         check_memory(
             &self.grid,

@@ -2,7 +2,7 @@
 //! off, seen from the side of its lowest y.
 
 use super::Storage;
-use super::texture::{Texture, count};
+use super::texture::Texture;
 
 impl Texture {
     /// Returns cells of one row: the mean emission of those behind each other along y, x to the right and z upwards.
@@ -15,6 +15,23 @@ impl Texture {
     }
 
     fn made_picture(&self) -> Self {
+        let mut sums = self.summed();
+        if let Some(rest) = self.rest() {
+            let others = rest.summed();
+            let (count, of_rest) = (sums.len(), others.len());
+            if of_rest > count {
+                sums = sums.repeat(of_rest / count);
+            }
+            for (index, sum) in sums.iter_mut().enumerate() {
+                *sum += others[index % of_rest];
+            }
+        }
+        let [columns, _, layers] = self.cells();
+        self.with_values([columns, 1, layers], sums, Storage::Emission)
+    }
+
+    /// Returns the mean emission of cells behind each other.
+    fn summed(&self) -> Vec<f32> {
         let [columns, rows, layers] = self.cells().map(|it| it as usize);
         let power = self.storage().power() as i32;
         let emission = |stored: f32| match power {
@@ -31,8 +48,6 @@ impl Texture {
                 }
             }
         }
-        let cells = [columns as u32, 1, layers as u32];
-        debug_assert_eq!(sums.len(), count(cells) * self.channels() as usize);
-        self.with_values(cells, sums, Storage::Emission)
+        sums
     }
 }

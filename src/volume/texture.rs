@@ -85,6 +85,8 @@ pub struct Texture {
     color: DVec3,
     place: Option<[DVec3; 2]>,
     origin: TextureOrigin,
+    /// What is added to the light of all cells.
+    rest: Option<Box<Texture>>,
     /// What billboards show, once it was asked for.
     picture: Arc<OnceLock<Box<Texture>>>,
 }
@@ -95,7 +97,7 @@ impl PartialEq for Texture {
         is_same
             && (self.cells, self.channels, self.storage, self.place)
                 == (other.cells, other.channels, other.storage, other.place)
-            && (self.color, &self.origin) == (other.color, &other.origin)
+            && (self.color, &self.origin, &self.rest) == (other.color, &other.origin, &other.rest)
     }
 }
 
@@ -162,6 +164,7 @@ impl Texture {
             color: DVec3::ONE,
             place: None,
             origin: TextureOrigin::Values,
+            rest: None,
             picture: Arc::default(),
         })
     }
@@ -177,13 +180,14 @@ impl Texture {
             storage,
             values: Arc::new(values),
             least: 0.0,
+            rest: None,
             picture: Arc::default(),
             ..self.clone()
         }
     }
 
     /// Makes one of the cells of a volume, where they are; with the colour of all light ([`Scene::one_color`]) they
-    /// have one channel.
+    /// have one channel. Reciprocals of one whose rest is apart are those of the strongest source; the rest is added.
     ///
     /// [`Scene::one_color`]: crate::Scene::one_color
     ///
@@ -202,14 +206,37 @@ impl Texture {
         let mut row = vec![0.0; 3 * columns as usize];
         for channel in channels {
             for (z, y) in (0..layers).flat_map(|z| (0..rows).map(move |y| (z, y))) {
-                volume.read_row(y, z, &mut row);
-                let of_channel = row.iter().skip(channel).step_by(3);
-                values.extend(of_channel.map(|value| storage.stored(*value)));
+                volume.read_stored_row(y, z, storage, &mut row);
+                values.extend(row.iter().skip(channel).step_by(3));
             }
         }
-        let texture = Self::new(cells, values, storage)?;
-        let placed = texture.placed(0.5 * (low + high), high - low);
-        Ok(placed.in_color(color.unwrap_or(DVec3::ONE)))
+        let texture = Self::new(cells, values, storage)?
+            .placed(0.5 * (low + high), high - low)
+            .in_color(color.unwrap_or(DVec3::ONE));
+        match volume.rest_beside(storage) {
+            Some(rest) => {
+                let rest = Self::of(rest, Storage::Emission, color)?;
+                texture.with_rest(rest.values.to_vec())
+            }
+            None => Ok(texture),
+        }
+    }
+
+    /// Has light added to that of all cells: of all red ones, then green, then blue, or one for all three.
+    ///
+    /// # Errors
+    /// As [`Texture::new`].
+    pub fn with_rest(self, light: Vec<f32>) -> Result<Self> {
+        self.checked_with_rest(light).map_err(Error::Unsupported)
+    }
+
+    /// Does the same; a fault is what is wrong.
+    pub(crate) fn checked_with_rest(self, light: Vec<f32>) -> std::result::Result<Self, String> {
+        let rest = Self::checked(self.cells, light, Storage::Emission)?;
+        Ok(Self {
+            rest: Some(rest.into()),
+            ..self
+        })
     }
 
     /// Makes that of a light ball.
@@ -244,6 +271,12 @@ impl Texture {
     #[must_use]
     pub fn values(&self) -> &Arc<Vec<f32>> {
         &self.values
+    }
+
+    /// Returns what is added to the light of all cells, before it is multiplied with the colour.
+    #[must_use]
+    pub fn rest(&self) -> Option<&Self> {
+        self.rest.as_deref()
     }
 
     /// Returns what the light of all cells is multiplied with, linear RGB.

@@ -38,7 +38,8 @@ impl Wave {
         let [_, rows, layers] = grid.cells();
         let task = self.prepare_cells(compute, scene, &grid)?;
         let mut cells = packed(&grid, value);
-        let mut values = vec![0.0; 3 * cells.plane as usize];
+        let channels = cells.channels as usize;
+        let mut values = vec![0.0; channels * cells.plane as usize];
         let buffer = DeviceBuffer::new(compute, "a layer of cells", values.len())?;
         for layer in 0..layers.div_ceil(BRICK) {
             let first = layer * BRICK;
@@ -46,7 +47,7 @@ impl Wave {
             cells.first[2] = (f64::from(first) * grid.cell() + low(&grid).z) as f32;
             cells.count = rows * height;
             cells.plane = cells.count * cells.stride;
-            let values = &mut values[..3 * cells.plane as usize];
+            let values = &mut values[..channels * cells.plane as usize];
             self.launch_cells(compute, scene, task, &cells, &buffer)?;
             buffer.read(compute, values)?;
             volume.add_layer(layer, values, cells.stride as usize)?;
@@ -161,8 +162,8 @@ fn packed(grid: &Grid, value: CellValue) -> Cells {
         count,
         stride,
         plane: count * stride,
+        channels: if value == CellValue::Apart { 6 } else { 3 },
         padding0: 0,
         padding1: 0,
-        padding2: 0,
     }
 }

@@ -52,13 +52,21 @@ fn a_volume_is_that_of_the_reference_whatever_its_size_and_its_sources() {
     ];
     let mut reference = Renderer::new(&Device::reference()).unwrap();
     let grid = Grid::new(DVec3::new(0.2, -0.1, 0.3), DVec3::new(2.6, 1.9, 1.1), 37).unwrap();
-    for value in [CellValue::Center, CellValue::Mean(2)] {
+    for value in [CellValue::Center, CellValue::Mean(2), CellValue::Apart] {
         let expected = bake(&mut reference, &scene, grid, value);
         for device in &mut devices {
             let found = bake(device, &scene, grid, value);
             let error = difference(&found, &expected);
             println!("{value:?}: {error:.1e}");
             assert!(error < ERROR, "{value:?}: {error}");
+            let rests = found.rest().zip(expected.rest());
+            assert_eq!(rests.is_some(), value == CellValue::Apart);
+            if let Some((found, of_reference)) = rests {
+                let error = difference(found, of_reference);
+                println!("the rest: {error:.1e}");
+                assert!(error < ERROR, "{error}");
+                assert!(difference(found, &expected) > ERROR, "the rest is all");
+            }
         }
         // A scene that is a little brighter is another.
         scene.spheres[0].coefficient *= 1.01;

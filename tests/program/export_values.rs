@@ -336,9 +336,35 @@ fn opengl_finds_the_irradiance_of_points_and_lines_as_the_reference_does() {
     ] {
         let scene = Scene::from_toml(&format!("{HEAD}{kind}")).unwrap();
         let refused = export(&scene, Language::Wgsl, Entry::Irradiance).unwrap_err();
+        let said = refused.to_string();
+        let table = &kind[2..kind.find(']').unwrap()];
         assert!(
-            refused.to_string().contains("no irradiance in shaders"),
+            said.contains("no irradiance in shaders") && said.contains(&format!("{table}[0]")),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn blocks_that_are_too_large_are_refused_by_the_table_that_fills_them() {
+    let many = "[[sphere]]\nradius = 0.1\n".repeat(513);
+    let scene = Scene::from_toml(&format!(
+        "{HEAD}[[cylinder]]\npoint = [0, 0, 0]\ndirection = [0, 0, 1]\n{many}"
+    ))
+    .unwrap();
+    for (entry, key) in [
+        (Entry::Function, "sphere[0]"),
+        (Entry::Irradiance, "sphere[512]"),
+    ] {
+        let refused = export(&scene, Language::Wgsl, entry)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            refused.contains(key) && refused.contains("uniform block"),
             "{refused}"
         );
     }
+    let mut few = scene;
+    few.spheres.truncate(100);
+    assert!(export(&few, Language::Wgsl, Entry::Function).is_ok());
 }

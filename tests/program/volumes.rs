@@ -198,6 +198,28 @@ fn reciprocals_are_stored_and_drawn_as_the_light_that_they_are_of() {
             );
         }
     }
+    // Beside another source: the strongest one's light, and the rest.
+    for (color, channels) in [("1, 1, 1", 2), ("1, 0.5, 0.1", 6)] {
+        let other = format!(
+            "[[sphere]]\ncenter = [1, 0, 0]\nradius = 0.1\nprofile = \"inverse\"\ncolor = [{color}]\n"
+        );
+        let both = format!("{CAMERA}{ball}{other}");
+        fs::write(folder.path().join("ball.toml"), both).unwrap();
+        expect(&folder.run(&[&bake[..], &["light.nrrd"]].concat()), 0, "");
+        let light = Texture::open(folder.path().join("light.nrrd")).unwrap();
+        for name in ["squares.nrrd", "squares.vti", "squares.raw"] {
+            let run = folder.run(&[&bake[..], &[name, "--store", "reciprocal"]].concat());
+            expect(&run, 0, "");
+            let squares = Texture::open(folder.path().join(name)).unwrap();
+            let rest = squares.rest().unwrap();
+            assert_eq!(2 * squares.channels(), channels, "{name}");
+            let parts = squares.values().iter().zip(rest.values().iter());
+            for (light, (square, rest)) in light.values().iter().zip(parts) {
+                let sum = square.powf(-0.5) + rest;
+                assert!(*rest > 0.0 && (sum / light - 1.0).abs() < 1e-5, "{name}");
+            }
+        }
+    }
     let refused = folder.run(&[&bake[..], &["x.vdb", "--store", "reciprocal"]].concat());
     expect(&refused, 2, "reciprocals are of .nrrd");
 }

@@ -11,17 +11,28 @@ macro_rules! field_modules {
     ($($(#[$doc:meta])* $kind:ident: $Type:ident, $list:ident;)*) => {
         $(mod $kind;)*
 
-        /// Lists every source of a scene, light by light and part by part.
-        pub fn sources(scene: &Scene) -> Vec<Source> {
-            let mut sources = Vec::with_capacity(scene.source_count());
+        /// Lists the lights of a scene, the parts of each; those of what is drawn as chains part by part.
+        pub fn lights(scene: &Scene) -> Vec<Vec<Source>> {
+            let mut lights = Vec::with_capacity(scene.light_count());
             $(for source in &scene.$list {
-                let add = &mut |part| sources.push(part);
                 match source.as_chains() {
-                    Some(chains) => chains.iter().for_each(|chain| path::add_chain(chain, add)),
-                    None => source.lights().for_each(|light| source.add_parts(light, add)),
+                    Some(chains) => {
+                        let add = &mut |part| lights.push(vec![part]);
+                        chains.iter().for_each(|chain| path::add_chain(chain, add));
+                    }
+                    None => lights.extend(source.lights().map(|light| {
+                        let mut parts = Vec::new();
+                        source.add_parts(light, &mut |part| parts.push(part));
+                        parts
+                    })),
                 }
             })*
-            sources
+            lights
+        }
+
+        /// Lists every source of a scene, light by light and part by part.
+        pub fn sources(scene: &Scene) -> Vec<Source> {
+            lights(scene).into_iter().flatten().collect()
         }
     };
 }

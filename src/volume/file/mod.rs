@@ -26,7 +26,8 @@ pub enum VolumeFormat {
         /// Whether values are halves.
         half: bool,
     },
-    /// `.nrrd`, float32 RGB, or one number for light of one colour, dense.
+    /// `.nrrd`, float32 RGB, or one number for light of one colour, dense; where a rest stands beside reciprocals, in
+    /// each cell that follows.
     Nrrd,
     /// `.vti`, VTK image data: the cell data `emission`, float32 RGB, or `density`, one number for light of one colour,
     /// dense.
@@ -87,6 +88,8 @@ struct Stored {
     storage: Storage,
     /// That of all light, of which each cell then has its largest channel alone.
     color: Option<DVec3>,
+    /// Whether the rest follows in each cell.
+    has_rest: bool,
 }
 
 #[derive(Debug)]
@@ -166,7 +169,7 @@ impl VolumeFile {
     /// [`Error::Output`] if it cannot be written; nothing is left behind then. [`Error::Unsupported`] for an image of
     /// layers with more than 32768 pixels along an edge; [`Error::OutOfMemory`] for one that does not fit.
     pub fn write(self, volume: &Volume, notes: &[(String, String)]) -> Result<()> {
-        let stored = self.stored_as();
+        let stored = self.stored_as(volume);
         let notes: Vec<_> = facts(volume, stored)
             .into_iter()
             .chain(notes.to_vec())
@@ -207,28 +210,30 @@ impl VolumeFile {
 
 impl VolumeFile {
     /// Returns what its format stores.
-    fn stored_as(&self) -> Stored {
+    fn stored_as(&self, volume: &Volume) -> Stored {
         let color = match self.format {
             VolumeFormat::Slices { .. } => None,
             _ => self.stored.color,
         };
         Stored {
             color,
+            has_rest: volume.rest_beside(self.stored.storage).is_some(),
             ..self.stored
         }
     }
 }
 
 impl Stored {
+    /// Returns how many numbers a cell has.
     fn channels(self) -> usize {
-        self.color.map_or(3, |_| 1)
+        self.color.map_or(3, |_| 1) * if self.has_rest { 2 } else { 1 }
     }
 }
 
 /// Returns what every file says of itself.
 fn facts(volume: &Volume, stored: Stored) -> Vec<(String, String)> {
     let values = match volume.value() {
-        CellValue::Center => "emission at the middle of each cell".to_owned(),
+        CellValue::Center | CellValue::Apart => "emission at the middle of each cell".to_owned(),
         CellValue::Mean(parts) => {
             format!("mean emission of each cell, of {parts}x{parts}x{parts} places")
         }
@@ -242,6 +247,10 @@ fn facts(volume: &Volume, stored: Stored) -> Vec<(String, String)> {
         note("values", values),
         note("unit", "linear RGB light a world unit of length".to_owned()),
     ];
+    if stored.has_rest {
+        let value = "emission of all sources but the strongest, behind what is stored of that";
+        facts.push(note("rest", value.to_owned()));
+    }
     if let Some(color) = stored.color {
         facts.push(note("color", numbers(color, " ")));
     }
@@ -252,20 +261,29 @@ fn facts(volume: &Volume, stored: Stored) -> Vec<(String, String)> {
     facts
 }
 
-/// Writes all cells, RGB after RGB or their densities, x fastest.
+/// Writes all cells, RGB after RGB or their densities, each with its rest if there is one, x fastest.
 fn write_dense(sink: &mut dyn Sink, volume: &Volume, stored: Stored) -> io::Result<()> {
     let [columns, rows, layers] = volume.grid().cells();
     let mut row = vec![0.0; 3 * columns as usize];
-    let mut bytes = Vec::with_capacity(4 * row.len());
-    let (first, step) = stored
-        .color
-        .map_or((0, 1), |color| (color.max_position(), 3));
+    let mut of_rest = row.clone();
+    let mut bytes = Vec::with_capacity(8 * row.len());
+    let written = match stored.color {
+        Some(color) => color.max_position()..color.max_position() + 1,
+        None => 0..3,
+    };
+    let rest = volume.rest_beside(stored.storage);
     for z in 0..layers {
         for y in 0..rows {
-            volume.read_row(y, z, &mut row);
+            volume.read_stored_row(y, z, stored.storage, &mut row);
+            if let Some(rest) = rest {
+                rest.read_row(y, z, &mut of_rest);
+            }
             bytes.clear();
-            let values = row.iter().skip(first).step_by(step);
-            bytes.extend(values.flat_map(|value| stored.storage.stored(*value).to_le_bytes()));
+            for (cell, rest_of_cell) in row.chunks_exact(3).zip(of_rest.chunks_exact(3)) {
+                let rest_of_cell = rest.map_or(&[][..], |_| &rest_of_cell[written.clone()]);
+                let values = cell[written.clone()].iter().chain(rest_of_cell);
+                bytes.extend(values.flat_map(|value| value.to_le_bytes()));
+            }
             sink.write_all(&bytes)?;
         }
     }

@@ -26,8 +26,9 @@ pub(super) fn write(
         })
         .collect();
     let (axes, channels, none, kind) = match stored.channels() {
-        1 => (3, "", "", ""),
-        _ => (4, "3 ", "none ", "RGB-color "),
+        1 => (3, String::new(), "", ""),
+        3 => (4, "3 ".to_owned(), "none ", "RGB-color "),
+        other => (4, format!("{other} "), "none ", "list "),
     };
     let header = format!(
         "NRRD0005\ntype: float\ndimension: {axes}\nspace dimension: 3\nsizes: {channels}{x} {y} {z}\nspace \

@@ -43,8 +43,19 @@ pub(super) fn json(
         },
         channels: match layers {
             Some(_) => &["red", "green", "blue", "alpha: the largest of them"],
-            None if channels == 1 => &["density"],
-            None => &["red", "green", "blue"],
+            None => match channels {
+                1 => &["density"],
+                2 => &["density", "rest"],
+                3 => &["red", "green", "blue"],
+                _ => &[
+                    "red",
+                    "green",
+                    "blue",
+                    "rest red",
+                    "rest green",
+                    "rest blue",
+                ],
+            },
         },
         kind: match layers {
             Some(_) => "OpenEXR",

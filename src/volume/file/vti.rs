@@ -22,7 +22,7 @@ pub(super) fn write(
         .map(|(name, value)| format!("{name}: {value}\n").replace("--", "- -"))
         .collect();
     let channels = stored.channels();
-    let name = if channels == 1 { "density" } else { "emission" };
+    let name = if channels < 3 { "density" } else { "emission" };
     let header = format!(
         "<?xml version=\"1.0\"?>\n<!--\n{notes}-->\n<VTKFile type=\"ImageData\" version=\"1.0\" \
          byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<ImageData WholeExtent=\"{extent}\" Origin=\"{origin}\" \

@@ -44,7 +44,7 @@ pub(super) type Read<T> = std::result::Result<T, Fault>;
 /// Cells as files have them.
 pub(super) struct Dense {
     pub cells: [u32; 3],
-    /// Of a cell, side by side: one, RGB, or RGB and alpha.
+    /// Of a cell, side by side: one, RGB, or RGB and alpha; of reciprocals also 2 or 6, with as many of a rest.
     pub channels: usize,
     pub values: Vec<f32>,
     /// The lowest corner of the box and the edges of a cell, world space.
@@ -56,7 +56,20 @@ pub(super) struct Dense {
 
 impl Dense {
     fn texture(self) -> Read<Texture> {
-        check_room(self.cells, self.channels.min(3) as u64).map_err(Fault::Other)?;
+        let has_rest = matches!(self.channels, 2 | 6);
+        if has_rest && self.storage == Storage::Emission {
+            let message = format!(
+                ": {} channels; light has 1, 3 or 4, reciprocals also 2 or 6",
+                self.channels
+            );
+            return Err(message.into());
+        }
+        let own = if has_rest {
+            self.channels / 2
+        } else {
+            self.channels.min(3)
+        };
+        check_room(self.cells, self.channels as u64).map_err(Fault::Other)?;
         let channel = |channel: usize| {
             let cells = self.values.chunks_exact(self.channels);
             cells.map(move |cell| match cell {
@@ -64,10 +77,16 @@ impl Dense {
                 cell => cell[channel],
             })
         };
-        let values: Vec<f32> = (0..self.channels.min(3)).flat_map(channel).collect();
-        let texture = Texture::checked(self.cells, values, self.storage)
-            .map_err(|wrong| format!(": {wrong}"))?
-            .in_color(self.color);
+        let values: Vec<f32> = (0..own).flat_map(channel).collect();
+        let wrong = |wrong: String| format!(": {wrong}");
+        let mut texture = Texture::checked(self.cells, values, self.storage).map_err(wrong)?;
+        if has_rest {
+            let rest = (own..self.channels).flat_map(channel).collect();
+            texture = texture
+                .checked_with_rest(rest)
+                .map_err(|it| format!(": the rest: {it}"))?;
+        }
+        let texture = texture.in_color(self.color);
         Ok(match self.place {
             None => texture,
             Some([low, cell]) => {

@@ -52,10 +52,10 @@ pub(super) fn read(bytes: &[u8]) -> Read<Dense> {
     let sizes: Option<Vec<u32>> = sizes.map(|it| it.parse().ok()).collect();
     let (channels, cells) = match sizes.as_deref() {
         Some(&[x, y, z]) => (1, [x, y, z]),
-        Some(&[channels @ (1 | 3 | 4), x, y, z]) => (channels as usize, [x, y, z]),
+        Some(&[channels @ (1..=4 | 6), x, y, z]) => (channels as usize, [x, y, z]),
         _ => {
             return Err(
-                ": `sizes` is to be three edges, or 1, 3 or 4 channels and three edges".into(),
+                ": `sizes` is to be three edges, or 1 to 4 or 6 channels and three edges".into(),
             );
         }
     };

@@ -38,8 +38,8 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Read<Dense> {
     }
     let channels = match sheet.channels.len() {
         0 | 1 => 1,
-        channels @ (3 | 4) => channels,
-        other => return Err(format!(": {other} channels; 1, 3 or 4 are read").into()),
+        channels @ (2..=4 | 6) => channels,
+        other => return Err(format!(": {other} channels; 1 to 4 or 6 are read").into()),
     };
     let number = Number::Float;
     let data = check_size(sheet.cells, channels * number.bytes(), bytes)?;

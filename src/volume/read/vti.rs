@@ -34,9 +34,11 @@ pub(super) fn read(bytes: &[u8]) -> Read<Dense> {
     };
     let channels = match attribute(array, "NumberOfComponents").unwrap_or("1") {
         "1" => 1,
+        "2" => 2,
         "3" => 3,
         "4" => 4,
-        other => return Err(format!(": {} channels; 1, 3 or 4 are read", shown(other)).into()),
+        "6" => 6,
+        other => return Err(format!(": {} channels; 1 to 4 or 6 are read", shown(other)).into()),
     };
     let is_of_points = header.contains("<PointData") && !header.contains("<CellData");
     let (cells, place) = place(image, is_of_points)?;

@@ -106,9 +106,9 @@ device_struct! {
         count: u32 = 40,
         stride: u32 = 44,
         plane: u32 = 48,
-        padding0: u32 = 52,
-        padding1: u32 = 56,
-        padding2: u32 = 60,
+        channels: u32 = 52,
+        padding0: u32 = 56,
+        padding1: u32 = 60,
     }
 }
 
