@@ -11,7 +11,7 @@
 #endif
 #ifndef LAST_EDGE_STEP
 #ifdef COARSE
-#define LAST_EDGE_STEP 1e-2f
+#define LAST_EDGE_STEP 1e-3f
 #else
 #define LAST_EDGE_STEP 1e-4f
 #endif

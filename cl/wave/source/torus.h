@@ -83,26 +83,16 @@ INLINE floatv torus_offset2(const torus_path *const path, const floatv s, floatv
 #include "torus/peaks.h"
 
 #ifdef SHAPES
-#ifndef SHORT_STEP2       // a test spoils it
-#define SHORT_STEP2 1e-3f // of the squared distance
-#endif
-
-// Finds where the ray comes closest to the ring, which far from it is not where it peaks, by Newton steps, the last one
-// of which is short beside the distance, and returns the squared distance there.
+// Finds where the ray comes closest to the ring, which far from it is not where it peaks, by Newton steps, and returns
+// the squared distance there. Within the ring they are too short, so that one that is short tells nothing: all are
+// taken.
 INLINE floatv torus_least_offset2(const torus_peaks *const peaks, floatv *const s) {
-    const floatv length2 = 4.0f * peaks->ray->length * peaks->ray->length;
-    floatv distance2 = splat(0.0f);
-    intv is_moving = (intv)(-1);
-    for (int step = 0; step < 5 && any_lane(is_moving); ++step) {
-        floatv slope, half_curvature;
-        distance2 = torus_offset2(&peaks->path, *s, &slope, &half_curvature);
-        const floatv ahead = -0.5f * slope * inverse(max(half_curvature, 1e-30f));
-        const floatv next = clamp(*s + ahead, 0.0f, peaks->ray->end), step_length = next - *s;
-        is_moving = step_length * step_length * length2 > SHORT_STEP2 * distance2;
-        distance2 = max(fma(fma(half_curvature, step_length, slope), step_length, distance2), 0.0f);
-        *s = next;
+    floatv slope, half_curvature;
+    for (int step = 0; step < 4; ++step) {
+        torus_offset2(&peaks->path, *s, &slope, &half_curvature);
+        *s = clamp(fma(-0.5f * slope, inverse(max(half_curvature, 1e-30f)), *s), 0.0f, peaks->ray->end);
     }
-    return distance2;
+    return torus_offset2(&peaks->path, *s, &slope, &half_curvature);
 }
 #endif
 
