@@ -12,7 +12,7 @@ use crate::volume::{Grid, Volume};
 /// Rays across the picture by which the error of a volume is measured, at most.
 const MOST_ACROSS: u32 = 128;
 
-/// A ray counts that has so much of the light of the brightest.
+/// A ray counts that has so much of the light that rays have on average.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// How far the light of a volume is from that of its scene.
@@ -26,7 +26,7 @@ pub struct BakeError {
     pub most: f64,
     /// The greatest.
     pub worst: f64,
-    /// How many rays count: those with at least a thousandth of the brightest one's light.
+    /// How many rays count: those with at least a thousandth of the light that rays have on average.
     pub rays: usize,
 }
 
@@ -90,8 +90,9 @@ impl Renderer {
     ) -> Result<Option<BakeError>> {
         let exact = self.integrate(&bare(scene), rays)?;
         let exact: Vec<DVec3> = exact.into_iter().map(DVec3::from).collect();
-        let brightest = exact.iter().map(|it| it.max_element()).fold(0.0, f64::max);
-        let counts = |exact: &DVec3| exact.max_element() > LEAST_SHARE * brightest;
+        let all: f64 = exact.iter().map(|it| it.max_element()).sum();
+        let least = LEAST_SHARE * all / exact.len().max(1) as f64;
+        let counts = |exact: &DVec3| exact.max_element() > least;
         let both = exact.iter().zip(found).filter(|(exact, _)| counts(exact));
         let mut errors: Vec<f64> = both
             .map(|(exact, found)| (found - exact).abs().max_element() / exact.max_element())
