@@ -212,58 +212,69 @@ fn for_each_stationary(
     for_each_root(&derivative[..=degree], offer);
 }
 
-/// Calls `offer` with each root in (0,1) at which a polynomial changes its sign; between the roots of its derivative
-/// there is at most one.
+/// The highest degree of a polynomial whose roots are sought.
+const DEGREE: usize = 5;
+
+/// Calls `offer` with each root in (0,1) at which a polynomial changes its sign: between the roots of its derivative
+/// there is at most one, and those are found in the same way, from the straight line on.
 fn for_each_root(coefficients: &[f64], offer: &mut impl FnMut(f64)) {
-    let value = |t: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c);
-    let mut from = 0.0;
-    let mut look_up_to = |to: f64| {
-        if to > from && (value(from) <= 0.0) != (value(to) <= 0.0) {
-            offer(bisected(&value, from, to));
+    let degree = coefficients.len() - 1;
+    let mut derivatives = [[0.0; DEGREE + 1]; DEGREE];
+    derivatives[0][..=degree].copy_from_slice(coefficients);
+    for order in 1..degree {
+        for k in 0..=degree - order {
+            derivatives[order][k] = (k + 1) as f64 * derivatives[order - 1][k + 1];
         }
-        from = to;
-    };
-    if coefficients.len() > 2 {
-        let derivative: Vec<f64> = (1..coefficients.len())
-            .map(|k| k as f64 * coefficients[k])
-            .collect();
-        let mut turns = Vec::new();
-        for_each_turn(&derivative, &mut |t| turns.push(t));
-        turns.into_iter().for_each(&mut look_up_to);
     }
-    look_up_to(1.0);
+    let mut turns = [1.0; DEGREE + 1]; // and the end
+    let mut count = 0;
+    for order in (0..degree).rev() {
+        let polynomial = &derivatives[order][..=degree - order];
+        let mut roots = [1.0; DEGREE + 1];
+        let mut found = 0;
+        let mut from = 0.0;
+        let mut was_below = polynomial[0] <= 0.0;
+        for &to in &turns[..=count] {
+            let is_below = value_and_slope(polynomial, to).0 <= 0.0;
+            if to > from && was_below != is_below {
+                roots[found] = bracketed_root(polynomial, was_below, from, to);
+                found += 1;
+            }
+            (from, was_below) = (to, is_below);
+        }
+        (turns, count) = (roots, found);
+    }
+    turns[..count].iter().copied().for_each(offer);
 }
 
-/// The same through a pointer: a polynomial of each degree asks for that of the next lower one.
-fn for_each_turn(coefficients: &[f64], offer: &mut dyn FnMut(f64)) {
-    for_each_root(coefficients, &mut |t| offer(t));
+fn value_and_slope(coefficients: &[f64], t: f64) -> (f64, f64) {
+    coefficients.iter().rev().fold((0.0, 0.0), |(value, slope), c| {
+        (value * t + c, slope * t + value)
+    })
 }
 
-fn bisected(value: &impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
-    let rises = value(from) <= 0.0;
-    // Regula falsi, halving where it stalls (Illinois).
-    let (mut low, mut high) = (value(from), value(to));
+/// Finds the root of a polynomial that changes its sign once in [from, to], where it is at most 0 first or last: Newton's
+/// steps, halving where they leave the bracket or shrink slowly.
+fn bracketed_root(coefficients: &[f64], rises: bool, mut from: f64, mut to: f64) -> f64 {
+    let mut t = 0.5 * (from + to);
+    let mut last = to - from;
+    // A halving and a slow step may take turns.
     for _ in 0..200 {
-        let middle = (from * high - to * low) / (high - low);
-        let middle = match middle > from && middle < to {
-            true => middle,
-            false => 0.5 * (from + to),
-        };
-        if to - from <= f64::EPSILON * to.abs() || middle == from || middle == to {
-            return middle;
-        }
-        let found = value(middle);
-        if found == 0.0 {
-            return middle;
-        }
-        if (found <= 0.0) == rises {
-            (from, low, high) = (middle, found, 0.5 * high);
+        let (value, slope) = value_and_slope(coefficients, t);
+        if (value <= 0.0) == rises {
+            from = t;
         } else {
-            (to, high, low) = (middle, found, 0.5 * low);
+            to = t;
         }
-        if (to - from) < 1e-15 {
-            return 0.5 * (from + to);
+        let step = value / slope;
+        if step.abs() <= f64::EPSILON * t.abs() || to - from <= f64::EPSILON * to {
+            return t;
         }
+        let newton = t - step;
+        let is_quick = newton > from && newton < to && 2.0 * step.abs() < last;
+        let next = if is_quick { newton } else { 0.5 * (from + to) };
+        last = (next - t).abs();
+        t = next;
     }
-    0.5 * (from + to)
+    t
 }
