@@ -9,7 +9,7 @@ use energywave::{Device, RadianceImage, Renderer, Scene};
 use glam::{DMat4, DVec3, dcamera as camera};
 
 use crate::common::meshes::{ball, hills};
-use crate::common::{self, device, lane_widths, options};
+use crate::common::{self, device, options, outer_lane_widths};
 
 /// What float32 leaves of a length, of the length: of corners, of the ray, and of the plane that both span.
 const LENGTH_ERROR: f64 = 1e-5;
@@ -111,9 +111,9 @@ fn lengths_are_those_of_float64_up_to_a_million_triangles() {
 }
 
 #[test]
-fn lengths_are_the_same_on_every_lane_width_and_open_edges_lose_rays() {
+fn lengths_are_the_same_on_one_lane_and_many_and_open_edges_lose_rays() {
     let scenes = [facing_square(), placed_balls(30), hills_from_above(40)];
-    for lanes in lane_widths() {
+    for lanes in outer_lane_widths() {
         let mut renderer = Renderer::with_options(&device(), &options(lanes, "")).unwrap();
         for scene in &scenes {
             let found = off(&mut renderer, scene);
