@@ -1,7 +1,7 @@
 // Which elements come near the rays of a unit, a square of blocks, and of each of its blocks: LANES elements are looked
 // at side by side. What is left out gives the rays nothing, so sums have the same bits however much is left out.
 #pragma once
-#include "rays.h"
+#include "pixels.h"
 
 // Blocks across and down in a unit. Scalar devices have rays enough to keep them busy one by one.
 #if LANES == 1
