@@ -46,8 +46,8 @@ INLINE floatv root(const floatv x) {
 }
 
 // Sums a panel from `u` on, of this length, which may be negative.
-INLINE floatv panel(const GlowView *const view, const Piece *const piece, const Distances *const distances,
-                    const floatv u, const floatv length) {
+INLINE floatv panel(const GlowView *const view, const Rays *const rays, const Piece *const piece,
+                    const Distances *const distances, const floatv u, const floatv length) {
     floatv sum = splat(0.0f);
     const bool fades = view->power > 0u || view->absorbed > 0.0f;
     for (uint node = 0u; node < NODES; ++node) {
@@ -66,21 +66,21 @@ INLINE floatv panel(const GlowView *const view, const Piece *const piece, const 
             light = share * share;
         }
         if (fades)
-            light *= fading(view, max(piece->behind + at, 0.0f));
+            light *= fading(view, rays, max(piece->behind + at, 0.0f));
         sum = fma(light, splat(WEIGHT[node]), sum);
     }
     return sum * fabs(length) * (fades ? 1.0f : view->scale);
 }
 
 // Sums from `from` to `to` by as many panels as the decay asks for.
-INLINE floatv panels(const GlowView *const view, const Piece *const piece, const Distances *const distances,
-                     const floatv from, const floatv to) {
+INLINE floatv panels(const GlowView *const view, const Rays *const rays, const Piece *const piece,
+                     const Distances *const distances, const floatv from, const floatv to) {
     floatv sum = splat(0.0f), at = from;
     intv goes_on = to != from;
     while (any_lane(goes_on)) {
         floatv next = to;
         if (view->power > 0u) {
-            const floatv argument = max(piece->behind + at + view->beta, view->beta);
+            const floatv argument = max(piece->behind + at + rays->beta, rays->beta);
             next = min(next, fma(argument, splat(MOST_GROWTH - 1.0f), at));
             next = select(next, max(to, fma(argument, splat(1.0f / MOST_GROWTH - 1.0f), at)), to < at);
         }
@@ -88,7 +88,7 @@ INLINE floatv panels(const GlowView *const view, const Piece *const piece, const
             const float most = 3.0f / view->absorbed;
             next = clamp(next, at - most, at + most);
         }
-        const floatv part = panel(view, piece, distances, at, next - at);
+        const floatv part = panel(view, rays, piece, distances, at, next - at);
         sum += select(splat(0.0f), part, goes_on);
         goes_on &= (next != to) & (next != at);
         at = next;
@@ -97,7 +97,8 @@ INLINE floatv panels(const GlowView *const view, const Piece *const piece, const
 }
 
 // Sums a piece over [low, high], lengths from its place.
-INLINE floatv piece_light(const GlowView *const view, Piece *const piece, floatv low, floatv high) {
+INLINE floatv piece_light(const GlowView *const view, const Rays *const rays, Piece *const piece, floatv low,
+                          floatv high) {
     // From where the ray is closest on: lengths are small there.
     const floatv steepness = dot3(piece->step, piece->step);
     const floatv closest = clamp(-dot3(piece->from, piece->step) / max(steepness, splat(TINY)), low, max(low, high));
@@ -129,37 +130,7 @@ INLINE floatv piece_light(const GlowView *const view, Piece *const piece, floatv
         return splat(0.0f);
     low = select(splat(0.0f), low, meets), high = select(splat(0.0f), high, meets);
     const floatv from = clamp(splat(0.0f), low, high);
-    return panels(view, piece, &distances, from, high) + panels(view, piece, &distances, from, low);
-}
-
-// What a ray is to an element's middle.
-typedef struct {
-    floatv at;   // where it is closest, a length along the ray
-    float3v way; // from the middle to there
-    floatv d2;   // its square
-} Passing;
-
-// Returns how rays pass a point. Their points at the point's depth are close to it, so nothing cancels: of
-// |p|^2 - (p D)^2 float32 keeps little.
-INLINE Passing passing(const Block *const block, const float x, const float y, const float z) {
-    Passing it;
-    const floatv aside_x = fma(block->slope_x, splat(z), block->offset_x - x);
-    const floatv aside_y = fma(block->slope_y, splat(z), block->offset_y - y);
-    const floatv along = fma(aside_x, block->toward.x, aside_y * block->toward.y);
-    it.at = fma(splat(z), block->per_z, -along);
-#ifdef SQUARED_DISTANCE
-    // Spoiled.
-    const floatv px = x - block->offset_x, py = y - block->offset_y;
-    const floatv to = px * block->toward.x + py * block->toward.y + z * block->toward.z;
-    it.d2 = max(px * px + py * py + z * z - to * to, 0.0f);
-    it.way.x = sqrt(it.d2), it.way.y = it.way.z = splat(0.0f);
-#else
-    it.d2 = max(fma(aside_x, aside_x, fma(aside_y, aside_y, -along * along)), splat(0.0f));
-    it.way.x = fma(-along, block->toward.x, aside_x);
-    it.way.y = fma(-along, block->toward.y, aside_y);
-    it.way.z = -along * block->toward.z;
-#endif
-    return it;
+    return panels(view, rays, piece, &distances, from, high) + panels(view, rays, piece, &distances, from, low);
 }
 
 // Minimax polynomials in t of what is smooth of F0/t, F2/t and F4/t, the lowest power first: within 3e-8, 1e-6 and
@@ -205,8 +176,10 @@ INLINE Moments moments(const floatv t, const floatv d, const bool is_smooth, con
 }
 
 // Returns the integral over a whole chord: the moments' sum, with the decay if there is one, `to_pole` from its pole.
-INLINE floatv chord_light(const GlowView *const view, const float radius, const float inverse_radius, const floatv d2,
-                          const floatv to_pole, const bool is_smooth, const bool has_decay) {
+INLINE floatv chord_light(const GlowView *const view, const Rays *const rays, __global const Element *const element,
+                          const floatv d2, const floatv to_pole, const bool has_decay) {
+    const float radius = element->radius, inverse_radius = element->inverse_radius;
+    const bool is_smooth = (element->form & IS_SMOOTH) != 0u;
     const floatv chord2 = max(radius * radius - d2, splat(0.0f));
     const floatv t = min(root(chord2) * inverse_radius, splat(1.0f));
     const floatv d = min(d2 * (inverse_radius * inverse_radius), splat(1.0f));
@@ -216,25 +189,23 @@ INLINE floatv chord_light(const GlowView *const view, const float radius, const 
         return sum.zeroth * measure;
     const floatv share = inverse(to_pole), step = radius * share, step2 = step * step;
     const floatv more = fma(step2, 5.0f * sum.fourth, 3.0f * sum.second);
-    const floatv w = view->ray_length * share;
+    const floatv w = rays->length * share;
     return fma(step2, more, sum.zeroth) * measure * w * w;
 }
 
 // Returns the light of a ball of emission 1 whose chords all lie on the rays, far from the decay's pole.
-INLINE floatv clear_ball_light(const GlowView *const view, const Block *const block,
+INLINE floatv clear_ball_light(const GlowView *const view, const Rays *const rays, const Passing *const it,
                                __global const Element *const element) {
-    const Passing it = passing(block, element->x, element->y, element->z);
-    return chord_light(view, element->radius, element->inverse_radius, it.d2, view->beta - block->begin + it.at,
-                       (element->form & IS_SMOOTH) != 0u, view->power == 2u);
+    return chord_light(view, rays, element, it->d2, rays->beta - it->low, view->power == 2u);
 }
 
 // Returns the light of a ball of emission 1.
-INLINE floatv ball_light(const GlowView *const view, const Block *const block, __global const Element *const element) {
-    const Passing it = passing(block, element->x, element->y, element->z);
+INLINE floatv ball_light(const GlowView *const view, const Rays *const rays, const Passing *const it,
+                         __global const Element *const element) {
     const float h = element->radius;
-    const floatv chord2 = fma(splat(h), splat(h), -it.d2);
+    const floatv chord2 = fma(splat(h), splat(h), -it->d2);
     const floatv half_chord = root(max(chord2, splat(0.0f)));
-    const floatv low = block->begin - it.at, high = block->end - it.at;
+    const floatv low = it->low, high = it->high;
     const intv meets = (chord2 > 0.0f) & (half_chord > low) & (-half_chord < high) & (low < high);
     if (!any_lane(meets))
         return splat(0.0f);
@@ -246,64 +217,63 @@ INLINE floatv ball_light(const GlowView *const view, const Block *const block, _
 #else
     const intv is_cut = (-half_chord < low) | (half_chord > high);
 #endif
-    const floatv to_pole = view->beta - low;
+    const floatv to_pole = rays->beta - low;
     const intv is_near = has_decay ? h > MOMENTS_END * to_pole : (intv)(0);
     const intv by_panels = meets & (is_plain ? is_cut | is_near : (intv)(-1));
     floatv light = splat(0.0f);
     if (any_lane(meets & ~by_panels)) {
-        light = chord_light(view, h, element->inverse_radius, it.d2, to_pole, is_smooth, has_decay);
+        light = chord_light(view, rays, element, it->d2, to_pole, has_decay);
         light = select(splat(0.0f), light, meets & ~by_panels);
     }
     if (any_lane(by_panels)) {
-        Piece piece = {it.way, block->toward, splat(h), splat(0.0f), it.at - block->begin, is_smooth};
-        const floatv part = piece_light(view, &piece, low, select(low, high, by_panels));
+        Piece piece = {it->way, rays->toward, splat(h), splat(0.0f), -low, is_smooth};
+        const floatv part = piece_light(view, rays, &piece, low, select(low, high, by_panels));
         light += select(splat(0.0f), part, by_panels);
     }
     return light;
 }
 
 // Returns the light of a stretch of a streak of emission 1: of its sides, and of the caps that it has.
-INLINE floatv stretch_light(const GlowView *const view, const Block *const block,
+INLINE floatv stretch_light(const GlowView *const view, const Rays *const rays, const Passing *const it,
                             __global const Element *const element) {
-    const Passing it = passing(block, element->x, element->y, element->z);
     const float4 half_axis = (float4)(element->axis_x, element->axis_y, element->axis_z, 0.0f);
     const float half_length = length(half_axis);
     const float4 axis = half_axis / half_length;
-    const float3v toward = block->toward;
+    const float3v toward = rays->toward;
     const bool is_smooth = (element->form & IS_SMOOTH) != 0u;
     const float3v axes = uniform3(axis);
-    const floatv along = dot3(it.way, axes), cosine = dot3(toward, axes);
+    const floatv along = dot3(it->way, axes), cosine = dot3(toward, axes);
     const floatv slant = select(cosine, copysign(splat(1e-12f), cosine), fabs(cosine) < 1e-12f);
-    const floatv low = block->begin - it.at, high = block->end - it.at, behind = it.at - block->begin;
+    const floatv low = it->low, high = it->high, behind = -low;
     // Where the ray passes the planes of the ends.
     const floatv at_begin = (-half_length - along) / slant, at_end = (half_length - along) / slant;
     const float slope = element->growth / half_length;
-    Piece sides = {fma3(axes, -along, it.way),
+    Piece sides = {fma3(axes, -along, it->way),
                    fma3(axes, -cosine, toward),
                    fma(along, splat(slope), splat(element->radius)),
                    cosine * slope,
                    behind,
                    is_smooth};
-    floatv light = piece_light(view, &sides, max(low, min(at_begin, at_end)), min(high, max(at_begin, at_end)));
+    floatv light = piece_light(view, rays, &sides, max(low, min(at_begin, at_end)), min(high, max(at_begin, at_end)));
     const intv is_forward = slant > 0.0f;
     if (element->form & HAS_FIRST_CAP) {
-        Piece cap = {fma3(axes, splat(half_length), it.way),
+        Piece cap = {fma3(axes, splat(half_length), it->way),
                      toward,
                      splat(element->radius - element->growth),
                      splat(0.0f),
                      behind,
                      is_smooth};
-        light += piece_light(view, &cap, select(max(low, at_begin), low, is_forward),
+        light += piece_light(view, rays, &cap, select(max(low, at_begin), low, is_forward),
                              select(high, min(high, at_begin), is_forward));
     }
     if (element->form & HAS_LAST_CAP) {
-        Piece cap = {fma3(axes, splat(-half_length), it.way),
+        Piece cap = {fma3(axes, splat(-half_length), it->way),
                      toward,
                      splat(element->radius + element->growth),
                      splat(0.0f),
                      behind,
                      is_smooth};
-        light += piece_light(view, &cap, select(low, max(low, at_end), is_forward),
+        light += piece_light(view, rays, &cap, select(low, max(low, at_end), is_forward),
                              select(min(high, at_end), high, is_forward));
     }
     return light;

@@ -3,6 +3,7 @@
 #include "../film.h"
 #include "element.h"
 #include "near.h"
+#include "pixels.h"
 
 // What rays have gathered, a block's side by side.
 typedef struct {
@@ -30,18 +31,22 @@ bool has_block(const FilmPart *const part, const GlowView *const view, const Cor
 // Adds an element's light along the rays of a block.
 INLINE void add_element(const GlowView *const view, const Cone *const cone, const Block *const block,
                         __global const Element *const element, float3v *const light) {
+    const Rays *const rays = &block->rays;
     floatv it;
     if ((element->form & IS_CLEAR) && element->z + element->radius <= block->least_z) {
-        it = clear_ball_light(view, block, element);
+        const Passing way = passing(block, element->x, element->y, element->z);
+        it = clear_ball_light(view, rays, &way, element);
     } else if (element->form & IS_STRETCH) {
         const float4 middle = (float4)(element->x, element->y, element->z, 0.0f);
         const float4 axis = (float4)(element->axis_x, element->axis_y, element->axis_z, 0.0f);
         if (!any_lane(is_stretch_near(view, cone, uniform3(middle), uniform3(axis), splat(element->growth),
                                       splat(element->radius))))
             return;
-        it = stretch_light(view, block, element);
+        const Passing way = passing(block, element->x, element->y, element->z);
+        it = stretch_light(view, rays, &way, element);
     } else {
-        it = ball_light(view, block, element);
+        const Passing way = passing(block, element->x, element->y, element->z);
+        it = ball_light(view, rays, &way, element);
     }
     light->x = fma(it, splat(element->red), light->x);
     light->y = fma(it, splat(element->green), light->y);
@@ -66,7 +71,7 @@ INLINE void add_light(const FilmPart *const part, const GlowView *const view, co
         if (count == 0u)
             continue;
         const Block block = block_at(view, corner.column, corner.row, depths);
-        if (!any_lane(block.begin < block.end))
+        if (!any_lane(block.rays.begin < block.rays.end))
             continue;
         float3v light = gathered->light[number];
         for (uint place = 0u; place < count; ++place) {

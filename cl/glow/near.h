@@ -1,7 +1,7 @@
 // Which elements come near the rays of a unit, a square of blocks, and of each of its blocks: LANES elements are looked
 // at side by side. What is left out gives the rays nothing, so sums have the same bits however much is left out.
 #pragma once
-#include "rays.h"
+#include "pixels.h"
 
 // Blocks across and down in a unit. Scalar devices have rays enough to keep them busy one by one.
 #if LANES == 1
@@ -70,12 +70,6 @@ INLINE floatv value_of(__global const Element *const elements, const intv number
     return gather((__global const float *)elements + place, number * (int)stride);
 }
 
-#if LANES == 1
-#define STORE_FLAGS(flags, condition) (*(flags) = (condition))
-#else
-#define STORE_FLAGS(flags, condition) JOIN(vstore, LANES)(condition, 0, flags)
-#endif
-
 // Puts elements of a list near the rays of a cone into the candidates, of which there is room for LANES at least.
 INLINE void add_candidates(const GlowView *const view, const Cone *const cone, __global const Element *const elements,
                            __global const uint *const numbers, const uint at, const uint end, Candidates *const found) {
@@ -92,20 +86,22 @@ INLINE void add_candidates(const GlowView *const view, const Cone *const cone, _
         const floatv growth = value_of(elements, number, 11u);
         near = select(near, is_stretch_near(view, cone, middle, axis, growth, radius), is_stretch);
     }
-    int flags[LANES];
+    uint bits = lane_bits(near & (LANE_NUMBERS < (uintv)(end - at)));
+    if (bits == 0u)
+        return;
     int list[LANES];
     float x[LANES], y[LANES], z[LANES], wide[LANES];
-    STORE_FLAGS(flags, near & (LANE_NUMBERS < (uintv)(end - at)));
     STORE_LANES(number, list);
     // How near stretches are is looked at one by one.
     const floatv reach = select(radius, splat(INFINITY), is_stretch);
     scatter(middle.x, x), scatter(middle.y, y), scatter(middle.z, z), scatter(reach, wide);
     uint count = found->count;
-    for (uint lane = 0u; lane < LANES; ++lane) {
+    for (; bits != 0u; bits &= bits - 1u) {
+        const uint lane = LOWEST_LANE(bits);
         found->number[count] = (uint)list[lane];
         found->x[count] = x[lane], found->y[count] = y[lane], found->z[count] = z[lane];
         found->radius[count] = wide[lane];
-        count += flags[lane] & 1;
+        ++count;
     }
     found->count = count;
 }
@@ -124,12 +120,9 @@ INLINE uint near_block(const GlowView *const view, const Cone *const cone, const
         const float3v place = {LOAD_LANES(candidates->x + begin), LOAD_LANES(candidates->y + begin),
                                LOAD_LANES(candidates->z + begin)};
         const intv near = is_ball_near(view, cone, place, LOAD_LANES(candidates->radius + begin));
-        int flags[LANES];
-        STORE_FLAGS(flags, near & (begin + LANE_NUMBERS < (uintv)(candidates->count)));
-        for (uint lane = 0u; lane < LANES; ++lane) {
-            list[count] = (ushort)(begin + lane);
-            count += flags[lane] & 1;
-        }
+        uint bits = lane_bits(near & (begin + LANE_NUMBERS < (uintv)(candidates->count)));
+        for (; bits != 0u; bits &= bits - 1u)
+            list[count++] = (ushort)(begin + LOWEST_LANE(bits));
     }
     return count;
 }

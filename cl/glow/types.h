@@ -1,7 +1,9 @@
-// The structs of particles as light that cross from the host to the device; src/glow/pack.rs mirrors them.
+// The structs of particles as light that cross from the host to the device; src/glow/pack.rs and src/glow/along.rs
+// mirror them.
 //
-// Positions are seen from the eye, along the axes of the picture: x to the right, y down, z along the view. A ray of an
-// eye leaves the axis by its slopes, a ray of parallel ones by an offset: x = x0 + slope z.
+// Positions of a picture are seen from the eye, along the axes of the picture: x to the right, y down, z along the
+// view. A ray of an eye leaves the axis by its slopes, a ray of parallel ones by an offset: x = x0 + slope z. For
+// listed rays positions are seen from the middle of all that shines, along the axes of the world.
 #pragma once
 #include "../check_size.h"
 
@@ -13,7 +15,6 @@ typedef struct {
     float ray_length;       // from the plane, along a ray
     float scale;            // what the integral over length is multiplied with, the decay's alpha included
     float beta;             // of the decay, a length
-    float per_length;       // 1 / ray_length: of a decay over s; 0 where there is none
     float absorbed;         // binary logarithm of what is absorbed, per length
     uint power;             // of the decay; 0: there is none
     uint width, height;     // pixels
@@ -22,7 +23,7 @@ typedef struct {
     uint tile;                     // pixels across and down in a tile
     uint tile_columns;
     float skew_x; // by which a ray lies more to the right than that above it
-    uint padding0;
+    uint padding0, padding1;
 } GlowView;
 CHECK_SIZE(GlowView, SIZEOF_GLOWVIEW);
 
@@ -35,7 +36,7 @@ typedef struct {
     float axis_x, axis_y, axis_z; // of a stretch: from its middle to its end
     float growth;                 // by which the radius is greater at that end than in the middle
     float inverse_radius;
-    float padding0, padding1, padding2;
+    float rest_x, rest_y, rest_z; // what float32 leaves of the middle, where rays are listed
 } Element;
 CHECK_SIZE(Element, SIZEOF_ELEMENT);
 
@@ -45,3 +46,22 @@ CHECK_SIZE(Element, SIZEOF_ELEMENT);
 #define HAS_FIRST_CAP 4u // a stretch with half a ball at its begin,
 #define HAS_LAST_CAP 8u  // and at its end
 #define IS_CLEAR 16u     // a ball that no begin or end of rays cuts, and far from a decay's pole
+
+// A listed ray. Lengths are counted from its place next to the middle of all that shines.
+typedef struct {
+    float place[3], place_rest[3];
+    float toward[3], toward_rest[3]; // the direction, of length 1
+    float begin, end, begin_rest, end_rest;
+    float length;
+    float beta; // of the decay, a length
+} GlowRay;
+CHECK_SIZE(GlowRay, SIZEOF_GLOWRAY);
+
+// A box around elements. Boxes follow each other as one walks down a tree: those within a box follow it.
+typedef struct {
+    float low_x, low_y, low_z;
+    uint next; // where to go on if no ray meets it; of a leaf: its first element
+    float high_x, high_y, high_z;
+    uint count; // elements of a leaf; else 0
+} GlowBox;
+CHECK_SIZE(GlowBox, SIZEOF_GLOWBOX);

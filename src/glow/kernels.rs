@@ -1,4 +1,5 @@
-//! The kernel that draws particles as light, as it is built for a film's format.
+//! The kernels of particles as light: what draws them, as it is built for a film's format, and what integrates along
+//! listed rays.
 
 use super::pack::STRUCTS;
 use super::sources::sources;
@@ -19,6 +20,19 @@ pub(super) fn build(
     let text = sources().resolve("glow/glow.cl");
     let program = Program::build(compute, text, &definitions(format), options)?;
     Ok((program.kernel("draw_particles")?, program))
+}
+
+/// Builds the kernel that integrates along listed rays.
+///
+/// # Errors
+/// As [`Program::build`].
+pub(super) fn build_along(
+    compute: &Compute,
+    options: &RendererOptions,
+) -> Result<(Kernel, Program)> {
+    let text = sources().resolve("glow/trace.cl");
+    let program = Program::build(compute, text, &definitions(FilmFormat::Floats), options)?;
+    Ok((program.kernel("trace_particles")?, program))
 }
 
 fn definitions(format: FilmFormat) -> String {

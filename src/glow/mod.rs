@@ -1,11 +1,15 @@
 //! Particles as light: the engine that draws balls and streaks, each of whose light ends at a distance, into a film on
-//! an OpenCL device. They are seen from the eye, and listed by tiles of pixels, anew for every frame, on the host.
+//! an OpenCL device. They are seen from the eye, and listed by tiles of pixels, anew for every frame, on the host; for
+//! listed rays they are found in a tree.
 
+mod along;
 mod kernels;
 pub mod pack;
 mod self_test;
+mod shapes;
 mod sources;
 mod tiles;
+mod tree;
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -20,7 +24,8 @@ use crate::opencl::{
     Argument, Compute, Film, FilmFormat, Handle, Kernel, RawMemory, RendererOptions, Uploaded,
     UploadedShared, run_time, state,
 };
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Ray, Scene};
+use along::{Along, RayPlan};
 pub(crate) use kernels::build_text;
 use pack::{Element, GlowView, Packed, Sight};
 use tiles::Tiles;
@@ -45,6 +50,7 @@ pub(crate) struct Glow {
     ends: Uploaded<u32>,
     numbers: Uploaded<u32>,
     depths: UploadedShared<f32>,
+    along: Along,
     under_way: Vec<Handle<Event>>,
     cost: FrameCost,
 }
@@ -62,7 +68,13 @@ struct Known {
 
 /// What is to be drawn.
 #[derive(Debug)]
-pub(crate) struct GlowPlan {
+pub(crate) enum GlowPlan {
+    Picture(PicturePlan),
+    Rays(RayPlan),
+}
+
+#[derive(Debug)]
+pub(crate) struct PicturePlan {
     view: GlowView,
     format: FilmFormat,
     /// Depths of others on the device; `None`: the scene's, if it has any.
@@ -82,6 +94,7 @@ impl Glow {
             ends: Uploaded::new("the tiles of particles"),
             numbers: Uploaded::new("the particles of tiles"),
             depths: UploadedShared::new("the depth image"),
+            along: Along::new(),
             under_way: Vec::new(),
             cost: FrameCost::default(),
         }
@@ -94,7 +107,7 @@ impl Glow {
 
     /// Returns how many kernels were built.
     pub(crate) fn kernel_count(&self) -> usize {
-        self.kernels.len()
+        self.kernels.len() + usize::from(self.along.kernel.is_some())
     }
 
     /// Plans the particles of a valid scene, behind depths that the device has, if there are any: packs and lists them,
@@ -102,8 +115,7 @@ impl Glow {
     ///
     /// # Errors
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
-    /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device);
-    /// [`Error::Unsupported`](crate::Error::Unsupported) for a camera with a shear along the view.
+    /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device).
     pub(crate) fn plan(
         &mut self,
         compute: &Compute,
@@ -120,7 +132,28 @@ impl Glow {
             let built = (kernel, &program);
             entry.insert(self_test::self_test(compute, format, &self.options, built)?);
         }
-        self.prepare(compute, scene, there, format).map(Some)
+        let plan = self.prepare(compute, scene, there, format)?;
+        Ok(Some(GlowPlan::Picture(plan)))
+    }
+
+    /// Plans light along listed rays through a valid scene, over the parameter of each. `None`: nothing shines.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
+    /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device).
+    pub(crate) fn plan_rays(
+        &mut self,
+        compute: &Compute,
+        scene: &Scene,
+        rays: &[Ray],
+    ) -> Result<Option<GlowPlan>> {
+        self.cost = FrameCost::default();
+        if !scene.has_particles() {
+            return Ok(None);
+        }
+        self.along.build(compute, &self.options)?;
+        let plan = self.along.prepare(compute, scene, rays)?;
+        Ok(Some(GlowPlan::Rays(plan)))
     }
 
     fn prepare(
@@ -129,9 +162,9 @@ impl Glow {
         scene: &Scene,
         there: Option<(RawMemory, DepthAlong)>,
         format: FilmFormat,
-    ) -> Result<GlowPlan> {
+    ) -> Result<PicturePlan> {
         let plane = scene.view_plane();
-        let sight = Sight::new(scene, &plane)?;
+        let sight = Sight::new(scene, &plane);
         let known = Some(Known {
             particles: scene.particles.revision(),
             elements: scene.light_elements.revision(),
@@ -139,25 +172,28 @@ impl Glow {
             image: scene.image,
             to_pole: sight.to_pole(),
         });
-        let is_known = self.known == known;
-        if !is_known {
+        let are_there = [
+            self.elements.is_there(),
+            self.ends.is_there(),
+            self.numbers.is_there(),
+        ];
+        if self.known != known || are_there.contains(&false) {
             self.packed.pack(scene, &sight);
             let size = [scene.image.width, scene.image.height];
             let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
             self.tiles.list(&self.packed.boxes, size, unit(lanes).0);
+            self.known = None;
+            let (packed, tiles) = (&mut self.packed, &mut self.tiles);
+            self.elements.upload_taken(compute, &mut packed.elements)?;
+            self.ends.upload_taken(compute, &mut tiles.ends)?;
+            self.numbers.upload_taken(compute, &mut tiles.numbers)?;
             self.known = known;
         }
-        let (packed, tiles) = (&self.packed, &self.tiles);
-        self.elements
-            .upload_unless(is_known, compute, &packed.elements)?;
-        self.ends.upload_unless(is_known, compute, &tiles.ends)?;
-        self.numbers
-            .upload_unless(is_known, compute, &tiles.numbers)?;
         let depths = scene.depth.as_ref().map(DepthImage::shared_values);
         self.depths.upload(compute, depths)?;
         let own = scene.depth.as_ref().map(DepthImage::along);
         let along = there.map(|(_, along)| along).or(own);
-        Ok(GlowPlan {
+        Ok(PicturePlan {
             view: GlowView {
                 tile: self.tiles.size,
                 tile_columns: self.tiles.columns,
@@ -168,7 +204,7 @@ impl Glow {
         })
     }
 
-    /// Enqueues what draws whole rows of pixels into a film. Nothing here waits.
+    /// Enqueues what draws whole rows of pixels, or some of the rays, into a film. Nothing here waits.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Device`](crate::Error::Device).
@@ -183,11 +219,19 @@ impl Glow {
         if self.under_way.len() > 64 {
             self.under_way.retain(is_going_on);
         }
+        let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
+        let plan = match plan {
+            GlowPlan::Picture(plan) => plan,
+            GlowPlan::Rays(plan) => {
+                let event = self.along.draw(compute, plan, &pixels, lanes, film)?;
+                self.under_way.extend(event);
+                return Ok(());
+            }
+        };
         let Some(kernel) = self.kernels.get(&plan.format) else {
             return Ok(());
         };
         let view = &plan.view;
-        let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
         let (unit_columns, unit_rows) = unit(lanes);
         let across = view.width.div_ceil(unit_columns);
         let first = pixels.start / view.width / unit_rows * across;
@@ -233,6 +277,7 @@ impl Glow {
             self.cost.launches += 1;
         }
         outcome?;
+        self.along.settle(compute)?;
         self.elements.settle(compute)?;
         self.ends.settle(compute)?;
         self.numbers.settle(compute)?;

@@ -6,11 +6,11 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::shapes::{self, Shape, Shine};
 use super::tiles::PixelBox;
-use crate::error::{Error, Result};
 use crate::image::DepthAlong;
 use crate::opencl::{DeviceStruct, StructLayout, by_value, device_struct};
-use crate::scene::{LightElement, MetaballKernel, Scene, ViewPlane};
+use crate::scene::{Scene, ViewPlane};
 use crate::threads;
 
 device_struct! {
@@ -24,18 +24,18 @@ device_struct! {
         ray_length: f32 = 20,
         scale: f32 = 24,
         beta: f32 = 28,
-        per_length: f32 = 32,
-        absorbed: f32 = 36,
-        power: u32 = 40,
-        width: u32 = 44,
-        height: u32 = 48,
-        is_parallel: u32 = 52,
-        has_depth: u32 = 56,
-        is_along_axis: u32 = 60,
-        tile: u32 = 64,
-        tile_columns: u32 = 68,
-        skew_x: f32 = 72,
-        padding0: u32 = 76,
+        absorbed: f32 = 32,
+        power: u32 = 36,
+        width: u32 = 40,
+        height: u32 = 44,
+        is_parallel: u32 = 48,
+        has_depth: u32 = 52,
+        is_along_axis: u32 = 56,
+        tile: u32 = 60,
+        tile_columns: u32 = 64,
+        skew_x: f32 = 68,
+        padding0: u32 = 72,
+        padding1: u32 = 76,
     }
 }
 
@@ -55,31 +55,60 @@ device_struct! {
         axis_z: f32 = 40,
         growth: f32 = 44,
         inverse_radius: f32 = 48,
-        padding0: f32 = 52,
-        padding1: f32 = 56,
-        padding2: f32 = 60,
+        rest_x: f32 = 52,
+        rest_y: f32 = 56,
+        rest_z: f32 = 60,
+    }
+}
+
+device_struct! {
+    /// A listed ray.
+    GlowRay [72] {
+        place: [f32; 3] = 0,
+        place_rest: [f32; 3] = 12,
+        toward: [f32; 3] = 24,
+        toward_rest: [f32; 3] = 36,
+        begin: f32 = 48,
+        end: f32 = 52,
+        begin_rest: f32 = 56,
+        end_rest: f32 = 60,
+        length: f32 = 64,
+        beta: f32 = 68,
+    }
+}
+
+device_struct! {
+    /// A box around elements, where rays are listed.
+    GlowBox [32] {
+        low_x: f32 = 0,
+        low_y: f32 = 4,
+        low_z: f32 = 8,
+        next: u32 = 12,
+        high_x: f32 = 16,
+        high_y: f32 = 20,
+        high_z: f32 = 24,
+        count: u32 = 28,
     }
 }
 
 by_value!(GlowView);
 
 /// Every struct of this engine that crosses to the device.
-pub const STRUCTS: &[StructLayout] = &[GlowView::LAYOUT, Element::LAYOUT];
+pub const STRUCTS: &[StructLayout] = &[
+    GlowView::LAYOUT,
+    Element::LAYOUT,
+    GlowRay::LAYOUT,
+    GlowBox::LAYOUT,
+];
 
-const IS_SMOOTH: u32 = 1;
-const IS_STRETCH: u32 = 2;
-const HAS_FIRST_CAP: u32 = 4;
-const HAS_LAST_CAP: u32 = 8;
+pub(super) const IS_SMOOTH: u32 = 1;
+pub(super) const IS_STRETCH: u32 = 2;
+pub(super) const HAS_FIRST_CAP: u32 = 4;
+pub(super) const HAS_LAST_CAP: u32 = 8;
 const IS_CLEAR: u32 = 16;
 
 /// Within this share of the way to a decay's pole moments tell enough, `MOMENTS_END` of `cl/glow/element.h`.
 const MOMENTS_END: f64 = 0.2;
-
-/// A streak shorter than this share of its radius is a ball.
-const SHORT: f64 = 1e-4;
-
-/// By so much of its radius a streak may miss an even growth and still be one stretch.
-const EVEN: f64 = 1e-7;
 
 /// The eye, the axes of the picture, and the pixels' places on them.
 #[derive(Debug)]
@@ -104,17 +133,11 @@ pub(super) struct Sight {
 }
 
 impl Sight {
-    /// # Errors
-    /// [`Error::Unsupported`] if the picture's axes are not perpendicular to the view.
-    pub(super) fn new(scene: &Scene, plane: &ViewPlane) -> Result<Self> {
+    /// Rows and columns are perpendicular to the view, whatever a projection's shear: matrices that are read have no
+    /// other.
+    pub(super) fn new(scene: &Scene, plane: &ViewPlane) -> Self {
         let right = plane.column_step.normalize();
         let down = (plane.row_step - plane.row_step.dot(right) * right).normalize();
-        let leans = |axis: DVec3| axis.dot(plane.forward).abs() > 1e-6;
-        if leans(right) || leans(down) {
-            let message = "particles are drawn by cameras whose rows and columns are perpendicular to the view; this \
-                projection has a shear along it";
-            return Err(Error::Unsupported(message.to_owned()));
-        }
         let scale = match plane.is_parallel {
             true => 1.0,
             false => 1.0 / plane.near,
@@ -123,7 +146,7 @@ impl Sight {
             scale * plane.column_step.length(),
             scale * plane.row_step.dot(down),
         ];
-        Ok(Self {
+        Self {
             eye: plane.eye,
             right,
             down,
@@ -137,16 +160,13 @@ impl Sight {
             is_parallel: plane.is_parallel,
             size: [scene.image.width, scene.image.height],
             to_pole: to_pole(scene, plane),
-        })
+        }
     }
 
     /// Packs it, and what a scene says of its light; `along` is what depths are measured along that end rays.
     pub(super) fn view(&self, scene: &Scene, along: Option<DepthAlong>) -> GlowView {
         let decay = scene.decay.filter(|decay| decay.power > 0);
-        // A decay of power 0 is alpha everywhere.
-        let alpha = scene.decay.map_or(1.0, |decay| decay.alpha);
         let measure = scene.integration.scale(self.ray_length) / self.ray_length;
-        let kappa = scene.absorption.map_or(0.0, |absorption| absorption.kappa);
         let is_along_axis = !matches!(along, None | Some(DepthAlong::Ray));
         GlowView {
             first_x: self.first[0] as f32,
@@ -155,18 +175,15 @@ impl Sight {
             step_y: self.step[1] as f32,
             near: self.near as f32,
             ray_length: self.ray_length as f32,
-            scale: (measure * alpha) as f32,
+            scale: (measure * alpha(scene)) as f32,
             beta: decay.map_or(0.0, |decay| decay.beta * self.ray_length) as f32,
-            per_length: decay.map_or(0.0, |_| 1.0 / self.ray_length) as f32,
-            absorbed: (kappa * LOG2_E) as f32,
             skew_x: self.skew as f32,
-            power: decay.map_or(0, |decay| decay.power),
             width: self.size[0],
             height: self.size[1],
             is_parallel: u32::from(self.is_parallel),
             has_depth: u32::from(along.is_some()),
             is_along_axis: u32::from(is_along_axis),
-            ..bytemuck::Zeroable::zeroed()
+            ..fading_view(scene)
         }
     }
 
@@ -204,29 +221,51 @@ impl Sight {
             return None;
         }
         let (x, y, z) = (center.x, center.y, center.z);
-        let [[left, right], rows] = if self.is_parallel {
-            [[x - radius, x + radius], [y - radius, y + radius]]
+        let ([left, right], [above, below]) = if self.is_parallel {
+            ([x - radius, x + radius], [y - radius, y + radius])
         } else if z <= 1.001 * radius {
             // The eye is in the ball, or beside it: any ray may be.
-            [[f64::NEG_INFINITY, f64::INFINITY]; 2]
+            let all = [f64::NEG_INFINITY, f64::INFINITY];
+            (all, all)
         } else {
             let square = (z - radius) * (z + radius);
             let inverse = 1.0 / square;
-            [x, y].map(|place| {
+            let range = |place: f64| {
                 let (middle, root) = (place * z, radius * (place * place + square).sqrt());
                 [(middle - root) * inverse, (middle + root) * inverse]
-            })
+            };
+            (range(x), range(y))
         };
-        let rows = rows.map(|at| (at - self.first[1]) * self.per_step[1]);
-        let [one, other] = match self.skew {
-            0.0 => [0.0; 2],
-            skew => rows.map(|row| row * skew),
+        let row = |at: f64| (at - self.first[1]) * self.per_step[1];
+        let column = |at: f64| (at - self.first[0]) * self.per_step[0];
+        let rows = [row(above), row(below)];
+        let (one, other) = match self.skew {
+            0.0 => (0.0, 0.0),
+            skew => (skew * rows[0], skew * rows[1]),
         };
-        let columns = [left - one.max(other), right - one.min(other)];
         Some([
-            columns.map(|at| (at - self.first[0]) * self.per_step[0]),
+            [
+                column(left - one.max(other)),
+                column(right - one.min(other)),
+            ],
             rows,
         ])
+    }
+}
+
+/// A decay of power 0 is alpha everywhere.
+fn alpha(scene: &Scene) -> f64 {
+    scene.decay.map_or(1.0, |decay| decay.alpha)
+}
+
+/// Packs how light fades along rays of any length, over their parameter.
+pub(super) fn fading_view(scene: &Scene) -> GlowView {
+    let kappa = scene.absorption.map_or(0.0, |absorption| absorption.kappa);
+    GlowView {
+        scale: alpha(scene) as f32,
+        absorbed: (kappa * LOG2_E) as f32,
+        power: scene.decay.map_or(0, |decay| decay.power),
+        ..bytemuck::Zeroable::zeroed()
     }
 }
 
@@ -255,8 +294,7 @@ pub(super) struct Packed {
 impl Packed {
     /// Packs all particles of a scene, in its order; those that no ray meets are left out.
     pub(super) fn pack(&mut self, scene: &Scene, sight: &Sight) {
-        let lists = scene.particles.iter().map(|it| it.points.len());
-        let count = lists.sum::<usize>() + scene.light_elements.len();
+        let count = shapes::count(scene);
         let pieces = threads::count().min(count.div_ceil(FEW)).max(1);
         self.pieces.resize_with(pieces, Piece::default);
         threads::for_each_chunk(&mut self.pieces, 1, |number, piece| {
@@ -287,120 +325,40 @@ impl Piece {
     fn pack(&mut self, scene: &Scene, sight: &Sight, part: Range<usize>) {
         self.elements.clear();
         self.boxes.clear();
-        let mut first = 0;
-        let mut of_part = |len: usize| {
-            let [start, end] =
-                [part.start, part.end].map(|it| it.clamp(first, first + len) - first);
-            first += len;
-            start..end
-        };
-        for particles in scene.particles.iter() {
-            let form = match particles.kernel {
-                MetaballKernel::Smooth => IS_SMOOTH,
-                MetaballKernel::Cone => 0,
-            };
-            particles.for_each(of_part(particles.points.len()), |center, radius, light| {
-                self.add_ball(sight, (center, radius), light, form);
-            });
-        }
-        let elements = &scene.light_elements;
-        for element in &elements[of_part(elements.len())] {
-            match element {
-                LightElement::Ball {
-                    center,
-                    radius,
-                    light,
-                } => self.add_ball(sight, (*center, *radius), *light, 0),
-                LightElement::Streak { ends, radii, light } => {
-                    self.add_streak(sight, *ends, *radii, *light);
-                }
-            }
-        }
+        shapes::for_each(scene, part, |shape, shine| match shape {
+            Shape::Ball { center, radius } => self.add_ball(sight, (center, radius), shine),
+            Shape::Stretch { ends, radii } => self.add_stretch(sight, ends, radii, shine),
+        });
     }
 
-    fn add_ball(&mut self, sight: &Sight, (center, radius): (DVec3, f64), light: DVec3, form: u32) {
+    fn add_ball(&mut self, sight: &Sight, (center, radius): (DVec3, f64), mut shine: Shine) {
         let center = sight.seen(center);
         let Some(cover) = sight.cover(center, radius) else {
             return;
         };
         if let Some(pixels) = PixelBox::new(cover, sight.size) {
-            let clear = if sight.is_clear(center, radius) {
-                IS_CLEAR
-            } else {
-                0
-            };
-            self.add(pixels, center, radius, light, form | clear);
+            if sight.is_clear(center, radius) {
+                shine.form |= IS_CLEAR;
+            }
+            self.boxes.push(pixels);
+            let shape = Shape::Ball { center, radius };
+            self.elements.push(Element::new(shape, shine));
         }
     }
 
-    fn add(&mut self, pixels: PixelBox, center: DVec3, radius: f64, light: DVec3, form: u32) {
-        if light == DVec3::ZERO {
-            return;
-        }
-        self.boxes.push(pixels);
-        self.elements.push(Element {
-            x: center.x as f32,
-            y: center.y as f32,
-            z: center.z as f32,
-            radius: radius as f32,
-            inverse_radius: (1.0 / radius) as f32,
-            red: light.x as f32,
-            green: light.y as f32,
-            blue: light.z as f32,
-            form,
-            ..bytemuck::Zeroable::zeroed()
-        });
-    }
-
-    fn add_streak(&mut self, sight: &Sight, ends: [DVec3; 2], radii: [f64; 3], light: DVec3) {
-        let [from, to] = ends;
-        let [first, middle, last] = radii;
-        let center = 0.5 * (from + to);
-        if from.distance(to) <= SHORT * first.max(last) {
-            return self.add_ball(sight, (center, middle), light, 0);
-        }
-        if (0.5 * (first + last) - middle).abs() <= EVEN * middle {
-            let caps = HAS_FIRST_CAP | HAS_LAST_CAP;
-            return self.add_stretch(sight, ends, [first, last], light, caps);
-        }
-        self.add_stretch(sight, [from, center], [first, middle], light, HAS_FIRST_CAP);
-        self.add_stretch(sight, [center, to], [middle, last], light, HAS_LAST_CAP);
-    }
-
-    fn add_stretch(
-        &mut self,
-        sight: &Sight,
-        ends: [DVec3; 2],
-        radii: [f64; 2],
-        light: DVec3,
-        caps: u32,
-    ) {
-        let [from, to] = ends.map(|end| sight.seen(end));
-        let covers =
-            [(from, radii[0]), (to, radii[1])].map(|(end, radius)| sight.cover(end, radius));
+    fn add_stretch(&mut self, sight: &Sight, ends: [DVec3; 2], radii: [f64; 2], shine: Shine) {
+        let ends = ends.map(|end| sight.seen(end));
+        let covers = [0, 1].map(|end| sight.cover(ends[end], radii[end]));
         // Before the plane is no light, but what is between the ends may be seen beyond them.
         let pixels = match covers {
             [None, None] => return,
             [Some(one), Some(other)] => PixelBox::around(one, other, sight.size),
             _ => PixelBox::new([[f64::NEG_INFINITY, f64::INFINITY]; 2], sight.size),
         };
-        let Some(pixels) = pixels else {
-            return;
-        };
-        let count = self.elements.len();
-        self.add(
-            pixels,
-            0.5 * (from + to),
-            0.5 * (radii[0] + radii[1]),
-            light,
-            IS_STRETCH | caps,
-        );
-        let axis = 0.5 * (to - from);
-        for element in &mut self.elements[count..] {
-            element.axis_x = axis.x as f32;
-            element.axis_y = axis.y as f32;
-            element.axis_z = axis.z as f32;
-            element.growth = (0.5 * (radii[1] - radii[0])) as f32;
+        if let Some(pixels) = pixels {
+            self.boxes.push(pixels);
+            let shape = Shape::Stretch { ends, radii };
+            self.elements.push(Element::new(shape, shine));
         }
     }
 }

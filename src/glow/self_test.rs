@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::Glow;
+use super::{Glow, GlowPlan};
 use crate::error::{Error, Result};
 use crate::image::ImageSize;
 use crate::opencl::{Compute, Film, FilmFormat, Kernel, Program, RendererOptions};
@@ -40,7 +40,7 @@ pub(super) fn self_test(
     tester.kernels.insert(format, kernel);
     for decay in [None, Some(Decay::new(0.5, 0.05))] {
         let scene = scene(decay);
-        let plan = tester.prepare(compute, &scene, None, format)?;
+        let plan = GlowPlan::Picture(tester.prepare(compute, &scene, None, format)?);
         let pixels = SIZE.pixels();
         let mut film = Film::in_format(compute, format, SIZE.width, SIZE.height)?;
         film.reserve_band(compute, pixels, 1)?;
@@ -48,19 +48,68 @@ pub(super) fn self_test(
         let mut found = vec![[0.0; 4]; pixels];
         film.read(compute, &mut found)?;
         tester.settle(compute)?;
-        if let Some(reason) = difference(&scene, &found, format) {
-            let device = compute.device();
-            return Err(Error::SelfTest {
-                device: device.name.clone(),
-                driver: format!("{} {}", device.platform, device.driver),
-                reason,
-            });
-        }
+        expect_right(compute, &scene, &found, format)?;
     }
     program.mark_tested();
     tester.kernels.remove(&format).ok_or_else(|| {
         Error::Unsupported("the kernel of particles was lost in its test".to_owned())
     })
+}
+
+/// Tests the kernel that integrates along listed rays, here those of the pixels, unless that was done on this device
+/// before.
+///
+/// # Errors
+/// [`Error::SelfTest`] if it computes wrong.
+pub(super) fn test_along(
+    compute: &Compute,
+    options: &RendererOptions,
+    (kernel, program): (Kernel, &Program),
+) -> Result<Kernel> {
+    let is_experiment = options.skips_self_test || compute.device().is_simulator;
+    if is_experiment || program.was_tested() {
+        return Ok(kernel);
+    }
+    let mut tester = Glow::new(options);
+    tester.along.kernel = Some(kernel);
+    for decay in [None, Some(Decay::new(0.5, 0.05))] {
+        let scene = scene(decay);
+        let plane = scene.view_plane();
+        let pixels = 0..SIZE.pixels() as u32;
+        let through = |index: u32| plane.ray(index % SIZE.width, index / SIZE.width);
+        let rays: Vec<_> = pixels.clone().map(through).collect();
+        let plan = GlowPlan::Rays(tester.along.prepare(compute, &scene, &rays)?);
+        let mut film = Film::in_format(compute, FilmFormat::Floats, SIZE.width, SIZE.height)?;
+        film.reserve_band(compute, rays.len(), 1)?;
+        tester.draw(compute, &plan, pixels, &mut film)?;
+        let mut found = vec![[0.0; 4]; rays.len()];
+        film.read(compute, &mut found)?;
+        tester.settle(compute)?;
+        let measure = scene.integration.scale(plane.ray_length) as f32;
+        let found: Vec<_> = found.iter().map(|it| it.map(|it| measure * it)).collect();
+        expect_right(compute, &scene, &found, FilmFormat::Floats)?;
+    }
+    program.mark_tested();
+    tester.along.kernel.ok_or_else(|| {
+        Error::Unsupported("the kernel of particles along rays was lost in its test".to_owned())
+    })
+}
+
+/// # Errors
+/// [`Error::SelfTest`] if light is not what it is to be.
+fn expect_right(
+    compute: &Compute,
+    scene: &Scene,
+    found: &[[f32; 4]],
+    format: FilmFormat,
+) -> Result<()> {
+    let device = compute.device();
+    let wrong = |reason| Error::SelfTest {
+        device: device.name.clone(),
+        driver: format!("{} {}", device.platform, device.driver),
+        reason,
+    };
+    difference(scene, found, format).map_or(Ok(()), |reason| Err(wrong(reason)))
 }
 
 const CENTER: DVec3 = DVec3::new(-0.4, 0.2, -0.1);

@@ -5,8 +5,11 @@ use crate::opencl::{SHARED, SourceFile, Sources, embed};
 const FILES: &[SourceFile<'static>] = embed!(
     "glow/element.h",
     "glow/glow.cl",
+    "glow/listed.h",
     "glow/near.h",
+    "glow/pixels.h",
     "glow/rays.h",
+    "glow/trace.cl",
     "glow/types.h",
 );
 

@@ -32,16 +32,9 @@ pub(super) struct PixelBox {
 impl PixelBox {
     /// Makes that of ranges of columns and of rows; `None`: it is beside the image.
     pub(super) fn new(cover: [[f64; 2]; 2], size: [u32; 2]) -> Option<Self> {
-        let range = |axis: usize| {
-            let [low, high] = cover[axis];
-            let last = f64::from(size[axis]) - 1.0;
-            let (low, high) = ((low - ROUNDING).ceil(), (high + ROUNDING).floor());
-            let is_there = low <= high && low <= last && high >= 0.0;
-            is_there.then(|| [low.max(0.0) as u32, high.min(last) as u32])
-        };
         Some(Self {
-            columns: range(0)?,
-            rows: range(1)?,
+            columns: pixels_in(cover[0], size[0])?,
+            rows: pixels_in(cover[1], size[1])?,
             line: [[0.0; 2]; 2],
             width: f32::INFINITY,
         })
@@ -70,7 +63,11 @@ impl PixelBox {
     /// Returns the numbers of tiles across and down of this size, both ends included.
     fn tiles(&self, tile: u32) -> [[u32; 2]; 2] {
         let shift = tile.trailing_zeros();
-        [self.columns, self.rows].map(|range| range.map(|at| at >> shift))
+        let ([left, right], [top, bottom]) = (self.columns, self.rows);
+        [
+            [left >> shift, right >> shift],
+            [top >> shift, bottom >> shift],
+        ]
     }
 
     /// Calls `visit` with every tile of some rows, counted from the first of these.
@@ -103,6 +100,20 @@ impl PixelBox {
         let distance = (x - share * along_x).hypot(y - share * along_y);
         distance <= 1.001 * self.width + 0.72 * tile + 1.0
     }
+}
+
+/// Returns the pixels in a range, both included, of so many; `None`: none is.
+fn pixels_in([low, high]: [f64; 2], count: u32) -> Option<[u32; 2]> {
+    let last = f64::from(count) - 1.0;
+    let (low, high) = (low - ROUNDING, high + ROUNDING);
+    if !(low <= last && high >= 0.0) {
+        return None;
+    }
+    // Rounded down by the conversion: `ceil` and `floor` are calls on processors of long ago.
+    let low = low.max(0.0);
+    let first = low as u32 + u32::from(low > f64::from(low as u32));
+    let end = high.min(last) as u32;
+    (first <= end).then_some([first, end])
 }
 
 /// The lists of tiles.
@@ -188,6 +199,24 @@ fn size_for(boxes: &[PixelBox], least: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_range_has_the_pixels_between_its_ends() {
+        let of = |low: f64, high: f64| pixels_in([low + ROUNDING, high - ROUNDING], 10);
+        for low in -30..130 {
+            for high in -30..130 {
+                let [low, high] = [low, high].map(|it| (f64::from(it) + 0.5) / 8.0);
+                let inside = |pixel: &u32| (low..=high).contains(&f64::from(*pixel));
+                let mut all = (0..10).filter(inside);
+                let expected = all
+                    .next()
+                    .map(|first| [first, all.next_back().unwrap_or(first)]);
+                assert_eq!(of(low, high), expected, "{low} to {high}");
+            }
+        }
+        assert_eq!(of(f64::NEG_INFINITY, f64::INFINITY), Some([0, 9]));
+        assert_eq!(of(f64::NAN, 3.0), None);
+    }
 
     #[test]
     fn every_tile_lists_in_order_all_that_it_sees() {

@@ -125,8 +125,7 @@ impl Surfaces {
     ///
     /// # Errors
     /// [`Error::OutOfMemory`](crate::Error::OutOfMemory), [`Error::Build`](crate::Error::Build),
-    /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device);
-    /// [`Error::Unsupported`](crate::Error::Unsupported) for a camera with a shear along the view.
+    /// [`Error::SelfTest`](crate::Error::SelfTest), [`Error::Device`](crate::Error::Device).
     pub(crate) fn draw(
         &mut self,
         compute: &Compute,
@@ -146,7 +145,7 @@ impl Surfaces {
     ) -> Result<SeenSurfaces> {
         self.cost = FrameCost::default();
         let lanes = self.options.lanes.unwrap_or(compute.device().lanes);
-        let (sight, plane) = plan::sight(scene, across, lanes)?;
+        let (sight, plane) = plan::sight(scene, across, lanes);
         let mut plan = Plan::new(scene, &sight, &plane);
         plan.variant = variant.unwrap_or(plan.variant);
         self.prepare(compute, plan.variant)?;

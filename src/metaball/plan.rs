@@ -1,9 +1,6 @@
 //! The plan of a frame: the grid of rays, and for every surface slabs of depth with their cells.
 
-use glam::DVec3;
-
 use super::pack::{Sight, Slab, Surface, fine, middle, surface, vector, wider};
-use crate::error::{Error, Result};
 use crate::image::DepthAlong;
 use crate::scene::{MetaballKernel, MetaballMethod, Metaballs, Scene, ViewPlane};
 
@@ -39,19 +36,11 @@ pub(super) struct Plan {
 }
 
 /// Returns the grid of so many rays across a pixel, of which a work-item carries as many side by side as it has lanes.
-///
-/// # Errors
-/// [`Error::Unsupported`] if the picture's axes are not perpendicular to the view.
-pub(super) fn sight(scene: &Scene, across: u32, lanes: u32) -> Result<(Sight, ViewPlane)> {
+/// Rows and columns are perpendicular to the view, whatever a projection's shear: matrices that are read have no other.
+pub(super) fn sight(scene: &Scene, across: u32, lanes: u32) -> (Sight, ViewPlane) {
     let (grid, plane) = scene.ray_grid(across);
     let right = plane.column_step.normalize();
     let down = (plane.row_step - plane.row_step.dot(right) * right).normalize();
-    let leans = |axis: DVec3| axis.dot(plane.forward).abs() > 1e-6;
-    if leans(right) || leans(down) {
-        let message = "metaballs are drawn by cameras whose rows and columns are perpendicular to the view; this \
-            projection has a shear along it";
-        return Err(Error::Unsupported(message.to_owned()));
-    }
     let scale = if plane.is_parallel {
         1.0
     } else {
@@ -68,7 +57,7 @@ pub(super) fn sight(scene: &Scene, across: u32, lanes: u32) -> Result<(Sight, Vi
         .depth
         .as_ref()
         .map_or(1, |depth| grid.width / depth.size().width.max(1));
-    Ok((
+    (
         Sight {
             right: vector(right),
             down: vector(down),
@@ -91,7 +80,7 @@ pub(super) fn sight(scene: &Scene, across: u32, lanes: u32) -> Result<(Sight, Vi
             ..bytemuck::Zeroable::zeroed()
         },
         plane,
-    ))
+    )
 }
 
 impl Plan {

@@ -41,11 +41,9 @@ impl<T: Pod + PartialEq> Uploaded<T> {
     /// # Errors
     /// As [`DeviceBuffer::new`] and [`DeviceBuffer::write`].
     pub fn upload(&mut self, compute: &Compute, data: &[T]) -> Result<()> {
-        self.is_valid &= self.copies.reap();
-        if self.is_valid && *self.contents == data {
+        if self.is_there() && *self.contents == data {
             return Ok(());
         }
-        self.is_valid = false;
         match Arc::get_mut(&mut self.contents) {
             Some(contents) => {
                 contents.clear();
@@ -53,6 +51,13 @@ impl<T: Pod + PartialEq> Uploaded<T> {
             }
             None => self.contents = Arc::new(data.to_vec()), // the old ones are still being copied
         }
+        self.write(compute)
+    }
+
+    /// Copies the contents to the device.
+    fn write(&mut self, compute: &Compute) -> Result<()> {
+        self.is_valid = false;
+        let data = self.contents.as_slice();
         let buffer = match self.buffer.take() {
             Some(buffer) if buffer.len() >= data.len() => buffer,
             _ => DeviceBuffer::with_flags(compute, self.what, data.len(), CL_MEM_READ_ONLY)?,
@@ -67,6 +72,26 @@ impl<T: Pod + PartialEq> Uploaded<T> {
         Ok(())
     }
 
+    /// Returns whether the device has what was uploaded last, or is about to have it.
+    pub(crate) fn is_there(&mut self) -> bool {
+        self.is_valid &= self.copies.reap();
+        self.is_valid
+    }
+
+    /// Uploads values that the device has not, as [`Uploaded::upload`] does, without a copy on the host: others take
+    /// their place in `data`.
+    ///
+    /// # Errors
+    /// As [`Uploaded::upload`].
+    pub(crate) fn upload_taken(&mut self, compute: &Compute, data: &mut Vec<T>) -> Result<()> {
+        self.copies.reap(); // of copies that are over, the values can be taken back
+        match Arc::get_mut(&mut self.contents) {
+            Some(contents) => std::mem::swap(contents, data),
+            None => self.contents = Arc::new(std::mem::take(data)), // the old ones are still being copied
+        }
+        self.write(compute)
+    }
+
     /// Uploads `data`, unless the caller knows that they are what was uploaded last.
     ///
     /// # Errors
@@ -77,8 +102,7 @@ impl<T: Pod + PartialEq> Uploaded<T> {
         compute: &Compute,
         data: &[T],
     ) -> Result<()> {
-        self.is_valid &= self.copies.reap();
-        match is_known && self.is_valid {
+        match self.is_there() && is_known {
             true => Ok(()),
             false => self.upload(compute, data),
         }

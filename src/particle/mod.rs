@@ -61,6 +61,8 @@ pub struct Simulation {
     history: History,
     /// The state after one that is shown.
     next: Option<Box<(State, step::Scratch)>>,
+    /// So much light there is about.
+    shone: usize,
 }
 
 /// A particle at a frame.
@@ -124,6 +126,7 @@ impl Simulation {
             laws,
             history,
             next: None,
+            shone: 0,
         })
     }
 
@@ -144,8 +147,9 @@ impl Simulation {
     /// [`Error::Unsupported`] if it is no frame, 0 to 1e6; [`Error::Scene`] if more than 2^32 particles of a wave came
     /// before it.
     pub fn light(&mut self, frame: f64) -> Result<Vec<LightElement>> {
-        let mut elements = Vec::new();
+        let mut elements = Vec::with_capacity(self.shone);
         self.show(frame, |laws, shown| laws.shine(shown, &mut elements))?;
+        self.shone = elements.len() + elements.len() / 8;
         Ok(elements)
     }
 

@@ -110,18 +110,24 @@ impl Engines {
         })
     }
 
-    /// Plans single rays through a valid scene without particles.
+    /// Plans single rays through a valid scene, without its volumes.
     pub(super) fn plan_rays(
         &mut self,
         compute: &Compute,
         scene: &Scene,
         rays: &[Ray],
     ) -> Result<FramePlan> {
-        (self.has_wave, self.has_glow, self.has_textures) = (true, false, false);
-        self.has_crowds = [false; 2];
+        let glow = self.glow.plan_rays(compute, scene, rays)?;
+        self.has_glow = glow.is_some();
+        self.has_wave = scene.source_count() > 0 || !self.has_glow;
+        (self.has_textures, self.has_crowds) = (false, [false; 2]);
+        let wave = match self.has_wave {
+            true => Some(self.wave.plan_rays(compute, scene, rays)?),
+            false => None,
+        };
         Ok(FramePlan {
-            wave: Some(self.wave.plan_rays(compute, scene, rays)?),
-            glow: None,
+            wave,
+            glow,
             textures: None,
             crowds: [None, None],
         })

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{Renderer, RendererBackend, ray_order};
 use crate::error::{Error, Result, SceneError};
 use crate::reference::{Tracer, particle_light, volume_light};
-use crate::scene::{List, Method, Ray, Scene};
+use crate::scene::{Method, Ray, Scene};
 use crate::threads;
 
 /// Hears the finished share of the work, 0 to 1, and may stop it.
@@ -27,8 +27,10 @@ impl Renderer {
     /// says. The scene's camera, image, depth and surfaces play no part: nothing hides light. With
     /// [`Jittered`](crate::scene::Method::Jittered) a ray's place in the list takes the place of its pixel's number.
     ///
-    /// Particles as light, those of waves at the scene's moment, and volumes are integrated in float64 on the host, on
-    /// every device, by quadrature: slowly. Billboards face the scene's camera.
+    /// Particles as light, those of waves at the scene's moment among them, have on a device the errors that its
+    /// pictures have of them, from however far rays come. A tree of them is built on the host when they change. Volumes
+    /// are integrated in float64 on the host, on every device, by quadrature: slowly. Billboards face the scene's
+    /// camera.
     ///
     /// # Errors
     /// As [`Renderer::render`]; [`Error::Scene`](crate::Error::Scene) also for a ray that [`Ray::fault`] refuses.
@@ -36,8 +38,8 @@ impl Renderer {
         self.integrate_with_progress(scene, rays, &mut |_| ControlFlow::Continue(()))
     }
 
-    /// Integrates as [`Renderer::integrate`] does; `progress` is told the finished share of the sources' light, 0 to 1,
-    /// and may stop it.
+    /// Integrates as [`Renderer::integrate`] does; `progress` is told the finished share of the light of sources and
+    /// particles, 0 to 1, and may stop it.
     ///
     /// # Errors
     /// As there, and [`Error::Interrupted`](crate::Error::Interrupted) if `progress` stopped the work.
@@ -55,29 +57,22 @@ impl Renderer {
         if scene.has_points() {
             return self.integrate(&scene.with_points_apart(), rays);
         }
-        if !scene.has_particles() && scene.volumes.is_empty() {
-            return self.integrate_sources(scene, rays, progress);
-        }
         let simulated = self.simulated_waves(scene)?;
         let given = simulated.as_ref().unwrap_or(scene);
-        let sources = Scene {
-            particles: List::new(),
-            light_elements: List::new(),
-            volumes: List::new(),
-            ..given.clone()
-        };
-        let mut lights = self.integrate_sources(&sources, rays, progress)?;
-        let others = particle_light(given, rays).into_iter();
-        let others = others.zip(volume_light(given, rays));
-        for (light, (of_particles, of_volumes)) in lights.iter_mut().zip(others) {
-            let sum = DVec3::from(*light) + of_particles + of_volumes;
-            *light = sum.to_array();
+        let mut lights = self.integrate_but_volumes(given, rays, progress)?;
+        let is_reference = matches!(self.backend, RendererBackend::Reference { .. });
+        if is_reference && given.has_particles() {
+            add(&mut lights, particle_light(given, rays));
+        }
+        if !given.volumes.is_empty() {
+            add(&mut lights, volume_light(given, rays));
         }
         Ok(lights)
     }
 
-    /// Integrates along valid rays in a valid scene without particles and volumes.
-    fn integrate_sources(
+    /// Integrates along valid rays in a valid scene without waves: on a device the light of sources and particles, by
+    /// the reference that of sources.
+    fn integrate_but_volumes(
         &mut self,
         scene: &Scene,
         rays: &[Ray],
@@ -100,6 +95,11 @@ impl Renderer {
             let (before, of_part) = ((number * at_once) as f32, part.len() as f32);
             let report = &mut |share: f32| progress((before + share * of_part) / rays.len() as f32);
             self.integrate_part(scene, part, lights, report)?;
+            // Who draws sources reports.
+            let is_silent = scene.source_count() == 0;
+            if is_silent && progress((before + of_part) / rays.len() as f32).is_break() {
+                return Err(Error::Interrupted);
+            }
         }
         Ok(lights)
     }
@@ -116,8 +116,10 @@ impl Renderer {
         let has_closed_forms =
             scene.tori.is_empty() && scene.curves.is_empty() && scene.paths.is_empty();
         let order = match scene.integration.method {
+            Method::Jittered { .. } => None, // whose random numbers are those of places
             Method::Exact { .. } if !has_closed_forms => Some(ray_order::alike(rays)),
-            _ => None,
+            // Rays that are alike meet the same particles.
+            _ => scene.has_particles().then(|| ray_order::alike(rays)),
         };
         let in_order = |order: &Vec<u32>| threads::map(order, |place| rays[*place as usize]);
         let ordered = order.as_ref().map(in_order);
@@ -139,6 +141,13 @@ impl Renderer {
             }
         });
         Ok(())
+    }
+}
+
+/// Adds light of other kinds.
+fn add(lights: &mut [[f64; 3]], others: Vec<DVec3>) {
+    for (light, other) in lights.iter_mut().zip(others) {
+        *light = (DVec3::from(*light) + other).to_array();
     }
 }
 

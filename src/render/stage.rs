@@ -96,10 +96,11 @@ impl Renderer {
         let frame = scene.simulation_settings().time.unwrap_or(0.0);
         let light = simulation.light(frame);
         self.stage.simulation = Some(simulation);
-        let given = scene.light_elements.iter().copied();
+        let mut light = light?;
+        light.extend_from_slice(&scene.light_elements);
         Ok(Some(Scene {
             waves: List::new(),
-            light_elements: given.chain(light?).collect(),
+            light_elements: light.into(),
             ..scene.clone()
         }))
     }

@@ -124,12 +124,21 @@ impl Renderer {
         }
     }
 
+    fn write_in_place(&mut self, is_wanted: bool) {
+        if let RendererBackend::OpenCl(renderer) = &mut self.backend {
+            renderer.writes_in_place = is_wanted;
+        }
+    }
+
     /// Draws a frame that the host puts together into an image of the renderer's own.
     pub(super) fn keep_drawn(&mut self, scene: &Scene, bloom: Option<Bloom>) -> Result<&[f32]> {
         let mut image = self.kept.take();
         let target = kept_image(&mut image, scene.image)?.as_mut_slice();
         let nothing = &mut |_: f32| ControlFlow::Continue(());
+        // The image is there for good: what the device writes into it need not be copied.
+        self.write_in_place(true);
         let drawn = self.draw(scene, whole(scene, target, bloom), nothing);
+        self.write_in_place(false);
         self.kept = image;
         drawn?;
         Ok(self.kept.as_ref().map_or(&[], RadianceImage::as_slice))

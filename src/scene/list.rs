@@ -1,15 +1,15 @@
 //! A list that knows whether it changed, so that what was made of it can be kept.
 
 use std::ops::{Deref, DerefMut};
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::extent::Extent;
 
 /// A `Vec` with a revision: two lists of one revision hold the same. It reads and changes like the `Vec` it
-/// dereferences to; every mutable access counts as a change.
+/// dereferences to; every mutable access counts as a change. Clones share what they hold until one is changed.
 ///
 /// ```
 /// use energywave::scene::{List, Sphere};
@@ -20,7 +20,7 @@ use super::extent::Extent;
 /// ```
 #[derive(Debug, Clone)]
 pub struct List<T> {
-    items: Vec<T>,
+    items: Arc<Vec<T>>,
     revision: u64,
     /// Where they are, once somebody asked.
     extent: OnceLock<Extent>,
@@ -31,7 +31,7 @@ impl<T> List<T> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            items: Vec::new(),
+            items: Arc::default(),
             revision: 0,
             extent: OnceLock::new(),
         }
@@ -63,7 +63,7 @@ impl<T> From<Vec<T>> for List<T> {
     fn from(items: Vec<T>) -> Self {
         let revision = if items.is_empty() { 0 } else { new_revision() };
         Self {
-            items,
+            items: Arc::new(items),
             revision,
             extent: OnceLock::new(),
         }
@@ -84,11 +84,11 @@ impl<T> Deref for List<T> {
     }
 }
 
-impl<T> DerefMut for List<T> {
+impl<T: Clone> DerefMut for List<T> {
     fn deref_mut(&mut self) -> &mut Vec<T> {
         self.revision = new_revision();
         self.extent = OnceLock::new();
-        &mut self.items
+        Arc::make_mut(&mut self.items)
     }
 }
 
@@ -134,7 +134,7 @@ mod tests {
         let second = list.revision();
         list[0] = 5;
         assert!(first != second && second != list.revision());
-        assert_eq!(copy.revision(), first);
+        assert_eq!((copy.revision(), copy[0], list[0]), (first, 1, 5));
         assert_eq!(
             List::<i32>::new().revision(),
             List::<f64>::default().revision()

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::{List, Scene, ViewPlane};
 use crate::image::{DepthImage, ImageSize};
+use crate::threads;
 
 /// Rays across and down in a pixel whose edges are smooth, and in one of a large picture: 33 million rays of a picture
 /// of 1920 by 1080 would take half a gigabyte, and at that size a pixel is small.
@@ -118,13 +119,17 @@ impl SeenSurfaces {
         let (first, width) = (rows.start as usize, scene.image.width as usize);
         let all = || [0..width, 0..scene.image.height as usize];
         let [columns, lit_rows] = self.lit.clone().unwrap_or_else(all);
-        let rows = self.rows(scene, rows).zip_rows(target, stride).enumerate();
-        for (_, (to, from)) in rows.filter(|(row, _)| lit_rows.contains(&(first + row))) {
-            let to = &mut to.as_chunks_mut::<4>().0[columns.clone()];
-            for (to, from) in to.iter_mut().zip(&from.as_chunks::<4>().0[columns.clone()]) {
-                (0..3).for_each(|channel| to[channel] += from[channel]);
+        let light = self.light.as_chunks::<4>().0;
+        threads::for_each_part(target, stride, |begin, to| {
+            let row = first + begin / stride;
+            if row < rows.end as usize && lit_rows.contains(&row) {
+                let from = &light[row * width..(row + 1) * width][columns.clone()];
+                let to = &mut to.as_chunks_mut::<4>().0[columns.clone()];
+                for (to, from) in to.iter_mut().zip(from) {
+                    (0..3).for_each(|channel| to[channel] += from[channel]);
+                }
             }
-        }
+        });
     }
 
     fn rows(&self, scene: &Scene, rows: Range<u32>) -> Rows<'_> {

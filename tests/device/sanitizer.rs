@@ -337,6 +337,11 @@ fn particles_shine_within_the_memory_that_there_is() {
         let image = renderer.render(&scene).unwrap();
         let lit = image.as_slice().chunks(4).filter(|pixel| pixel[0] > 0.0);
         assert!(lit.count() > 20);
+        // The same along rays, of which the last lanes have none.
+        let plane = scene.view_plane();
+        let rays: Vec<_> = (0..21).map(|column| plane.ray(column, 6)).collect();
+        let lights = renderer.integrate(&scene, &rays).unwrap();
+        assert!(lights.iter().filter(|light| light[0] > 0.0).count() > 5);
     }
 }
 

@@ -74,6 +74,34 @@ fn cameras(eye: DVec3) -> Vec<(&'static str, Camera)> {
     ]
 }
 
+/// Cameras whose rows and columns lean, both of them.
+fn leaning_cameras(eye: DVec3) -> Vec<(&'static str, Camera)> {
+    use camera::rh::proj as rhp;
+    let view = camera::rh::view::look_at_mat4(eye, DVec3::ZERO, DVec3::Z);
+    let (side, height) = (3.0, 2.2);
+    let matrices = |view: DMat4, projection: DMat4| Camera::from_matrices(view, projection);
+    vec![
+        (
+            "sheared both ways, off-centre",
+            matrices(
+                view,
+                DMat4::from_cols_array(&[
+                    1.0, -0.2, 0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+                ]) * rhp::directx::frustum(-0.13, 0.07, -0.06, 0.11, 0.3, 40.0),
+            ),
+        ),
+        (
+            "parallel, sheared",
+            matrices(
+                view,
+                DMat4::from_cols_array(&[
+                    1.0, 0.1, 0.0, 0.0, -0.4, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+                ]) * rhp::directx::orthographic(-side, side, -height, height, 0.3, 40.0),
+            ),
+        ),
+    ]
+}
+
 fn through(mut scene: Scene, camera: Camera) -> Scene {
     scene.camera = Camera {
         ray_length: scene.camera.ray_length,
@@ -85,7 +113,7 @@ fn through(mut scene: Scene, camera: Camera) -> Scene {
 #[test]
 fn cameras_of_engines_see_particles_as_float64_does() {
     let mut renderer = renderer("");
-    for (name, camera) in cameras(FAR) {
+    for (name, camera) in cameras(FAR).into_iter().chain(leaning_cameras(FAR)) {
         let balls = through(cloud(FAR), camera.clone());
         expect_true(name, &mut renderer, &balls, OF_PIXEL);
         let streaks = through(streaks(FAR), camera);

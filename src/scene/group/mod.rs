@@ -127,7 +127,7 @@ macro_rules! define_group {
 }
 for_each_kind!(define_group);
 
-fn reserve_list<T>(list: &mut List<T>, more: u64) {
+fn reserve_list<T: Clone>(list: &mut List<T>, more: u64) {
     list.reserve_exact(more as usize);
 }
 
