@@ -100,8 +100,13 @@ typedef struct {
     uint cell, level;
 } Laying;
 
-// Writes the weights of a cell's nodes across and down for a source.
-INLINE void weigh(const Laying *const laying, const uint index, const uint n, float *const across, float *const down) {
+// Where the light of a row of nodes is: four of them a vector.
+#define ROW_VECTORS(n) (((n) + 3u) / 4u)
+#define MOST_VECTORS ((MOST_NODES + 3u) / 4u)
+
+// Writes what a source lays on a row of a cell's nodes, and the weights of the rows.
+INLINE void weigh(const Laying *const laying, const uint index, const uint n, const float4 light, float16 *const in_row,
+                  float *const down) {
     const float half_side = (float)(4u << laying->level);
     const uint code = laying->cells[index];
     __global const CrowdSource *const source = laying->sources + index;
@@ -113,52 +118,55 @@ INLINE void weigh(const Laying *const laying, const uint index, const uint n, fl
     const float right = ((float)(8u * every_other(code) + 4u) - column + source->x) / half_side;
     const float below = ((float)(8u * every_other(code >> 1) + 4u) - row + source->y) / half_side;
 #endif
+    float across[4u * MOST_VECTORS];
+    for (uint i = 0u; i < 4u * ROW_VECTORS(n); ++i)
+        across[i] = 0.0f;
     weights_at(laying->numbers, CELL_NODES, n, right, across);
     weights_at(laying->numbers, CELL_NODES, n, below, down);
+    for (uint k = 0u; k < ROW_VECTORS(n); ++k)
+        in_row[k] = (float16)(across[4u * k] * light, across[4u * k + 1u] * light, across[4u * k + 2u] * light,
+                              across[4u * k + 3u] * light);
 }
 
 // Lays the peaks of a cell's sources on its nodes; n is a constant where it can be.
-INLINE void lay_flat(const CrowdView *const view, const Laying *const laying, const uint n, float4 *const laid) {
-    for (uint node = 0u; node < n * n; ++node)
-        laid[node] = (float4)(0.0f);
+INLINE void lay_flat(const CrowdView *const view, const Laying *const laying, const uint n, float16 *const laid) {
+    for (uint k = 0u; k < n * ROW_VECTORS(n); ++k)
+        laid[k] = (float16)(0.0f);
     const uint shift = 2u * laying->level, end = laying->starts[(laying->cell + 1u) << shift];
     for (uint index = laying->starts[laying->cell << shift]; index < end; ++index) {
         __global const CrowdSource *const source = laying->sources + index;
-        float across[MOST_NODES], down[MOST_NODES];
-        weigh(laying, index, n, across, down);
+        float16 in_row[MOST_VECTORS];
+        float down[MOST_NODES];
         const float4 light = source->peak * (float4)(source->red, source->green, source->blue, 0.0f);
-        for (uint j = 0u; j < n; ++j) {
-            const float4 in_row = down[j] * light;
-            for (uint i = 0u; i < n; ++i)
-                laid[j * n + i] += across[i] * in_row;
-        }
+        weigh(laying, index, n, light, in_row, down);
+        for (uint j = 0u; j < n; ++j)
+            for (uint k = 0u; k < ROW_VECTORS(n); ++k)
+                laid[j * ROW_VECTORS(n) + k] += down[j] * in_row[k];
     }
 }
 
 // Lays their light on its nodes in all depths.
-INLINE void lay_deep(const CrowdView *const view, const Laying *const laying, const uint n, float4 *const laid) {
+INLINE void lay_deep(const CrowdView *const view, const Laying *const laying, const uint n, float16 *const laid) {
     const uint depths = view->depths, shift = 2u * laying->level;
-    for (uint node = 0u; node < n * n * depths; ++node)
-        laid[node] = (float4)(0.0f);
+    for (uint k = 0u; k < n * ROW_VECTORS(n) * depths; ++k)
+        laid[k] = (float16)(0.0f);
     const float per_half_t = 1.0f / view->half_t;
     const uint end = laying->starts[(laying->cell + 1u) << shift];
     for (uint index = laying->starts[laying->cell << shift]; index < end; ++index) {
         __global const CrowdSource *const source = laying->sources + index;
-        float across[MOST_NODES], down[MOST_NODES], deep[MOST_DEPTHS];
-        weigh(laying, index, n, across, down);
+        float16 in_row[MOST_VECTORS];
+        float down[MOST_NODES], deep[MOST_DEPTHS];
+        weigh(laying, index, n, (float4)(source->red, source->green, source->blue, 0.0f), in_row, down);
         weights_at(laying->numbers, DEPTH_NODES, depths, (source->t - view->middle_t) * per_half_t, deep);
-        const float4 light = (float4)(source->red, source->green, source->blue, 0.0f);
         for (uint q = 0u; q < depths; ++q)
-            for (uint j = 0u; j < n; ++j) {
-                const float4 in_row = deep[q] * down[j] * light;
-                for (uint i = 0u; i < n; ++i)
-                    laid[(q * n + j) * n + i] += across[i] * in_row;
-            }
+            for (uint j = 0u; j < n; ++j)
+                for (uint k = 0u; k < ROW_VECTORS(n); ++k)
+                    laid[(q * n + j) * ROW_VECTORS(n) + k] += deep[q] * down[j] * in_row[k];
     }
 }
 
-// Lays the light of a cell's sources on its nodes. Without depths it is their peaks, where `is_wanted` says
-// that tiles look at the cell that it is a quarter of.
+// Lays the light of a cell's sources on its nodes. Without depths it is their peaks, where there are more sources than
+// nodes and `is_wanted` says that tiles look at the cell that it is a quarter of.
 __kernel void lay_sources(const CrowdView view, const uint level, const uint has_depths,
                           __global const uint *const restrict starts, __global const uint *const restrict cells,
                           __global const CrowdSource *const restrict sources,
@@ -171,7 +179,9 @@ __kernel void lay_sources(const CrowdView view, const uint level, const uint has
     if (begin == end || (!has_depths && is_wanted[cells_below(&view, level + 1u) + (cell >> 2)] == 0u))
         return;
     const uint n = view.nodes, depths = has_depths ? view.depths : 1u;
-    float4 laid[MOST_NODES * MOST_NODES * MOST_DEPTHS];
+    if (!has_depths && end - begin <= n * n) // tiles take so few by themselves
+        return;
+    float16 laid[MOST_NODES * MOST_VECTORS * MOST_DEPTHS];
     const Laying laying = {starts, cells, sources, numbers, cell, level};
     if (!has_depths)
         n == 3u   ? lay_flat(&view, &laying, 3u, laid)
@@ -183,8 +193,9 @@ __kernel void lay_sources(const CrowdView view, const uint level, const uint has
                   : lay_deep(&view, &laying, n, laid);
     const uint from = has_depths ? (cells_below(&view, level) - cells_below(&view, view.base) + cell) * n * n * depths
                                  : (cells_below(&view, level) + cell) * n * n;
+    const float4 *const row = (const float4 *)laid;
     for (uint node = 0u; node < n * n * depths; ++node)
-        nodes[from + node] = laid[node];
+        nodes[from + node] = row[4u * ROW_VECTORS(n) * (node / n) + node % n];
 }
 
 // Lays the light at the nodes of four cells on those of the cell that they are quarters of.

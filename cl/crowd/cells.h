@@ -8,9 +8,6 @@
 #define NODES 16u
 #define BATCHES (NODES / LANES)
 
-// A closed form takes as long as so many limits.
-#define LIMITS_FOR_A_POINT 8u
-
 // Some of the ends of a tile.
 typedef struct {
     uint first, end;
@@ -84,36 +81,51 @@ INLINE void add_sources(const CrowdView *const view, const Cells *const cells, c
     }
 }
 
-// Adds the limits of a cell, which are those of whole rays.
-INLINE void add_limits(const CrowdView *const view, const Cells *const cells, const uint at, const float half_side,
-                       const float middle_u, const float middle_v, const float angle, NodesOfTile *const tile) {
-    const uint n = view->nodes;
-    float3v *const light = tile->light + CUT_OF(tile) * BATCHES;
-    const float soft4 = angle * angle * angle * angle;
-    for (uint j = 0u; j < n; ++j) {
-        const float v = fma(half_side * view->step_v, cells->numbers[CELL_NODES + j], middle_v);
-        for (uint i = 0u; i < n; ++i) {
-            const float u = fma(half_side * view->step_u, cells->numbers[CELL_NODES + i], middle_u);
-            const float per_length2 = 1.0f / fma(u, u, fma(v, v, 1.0f));
-            for (uint batch = 0u; batch < BATCHES; ++batch) {
-                const Rays *const rays = &tile->rays[batch];
-                const floatv beside2 = cross2(rays->u - u, rays->v - v, u, v);
-                floatv sine2 = beside2 * rays->per_stretch * rays->per_stretch * per_length2;
-                if (angle > 0.0f)
-                    sine2 = root(fma(sine2, sine2, splat(soft4)));
-                add_light(&light[batch], core_of(view, sine2), cells->limits[at * n * n + j * n + i]);
-            }
-        }
-    }
-    for (uint batch = 0u; batch < BATCHES; ++batch)
-        add_light(&light[batch], splat(1.0f), cells->levels[at]);
-}
-
 // Where the nodes of a cell are: the first of them, the middle of the cell, and its half side in pixels.
 typedef struct {
     uint from;
     float half_side, u, v;
 } Place;
+
+// Adds the limit of a point at the slopes u and v, of so great a peak, which is that of whole rays.
+INLINE void add_limit(const CrowdView *const view, const float u, const float v, const float4 peak, const float soft4,
+                      NodesOfTile *const tile) {
+    float3v *const light = tile->light + CUT_OF(tile) * BATCHES;
+    const float per_length2 = 1.0f / fma(u, u, fma(v, v, 1.0f));
+    for (uint batch = 0u; batch < BATCHES; ++batch) {
+        const Rays *const rays = &tile->rays[batch];
+        const floatv beside2 = cross2(rays->u - u, rays->v - v, u, v);
+        floatv sine2 = beside2 * rays->per_stretch * rays->per_stretch * per_length2;
+        if (soft4 > 0.0f)
+            sine2 = root(fma(sine2, sine2, splat(soft4)));
+        add_light(&light[batch], core_of(view, sine2), peak);
+    }
+}
+
+// Adds the limits of a cell, by its nodes or by its sources, whichever are fewer.
+INLINE void add_limits(const CrowdView *const view, const Cells *const cells, const uint at, const Place place,
+                       const uint first, const uint end, const float angle, NodesOfTile *const tile) {
+    const uint n = view->nodes;
+    const float soft4 = angle * angle * angle * angle;
+    if (end - first <= n * n)
+        for (uint index = first; index < end; ++index) {
+            __global const CrowdSource *const source = cells->sources + index;
+            const uint code = cells->codes[index];
+            const float u = slope_u(view, (float)(8u * every_other(code) + 4u) + source->x);
+            const float v = slope_v(view, (float)(8u * every_other(code >> 1) + 4u) + source->y);
+            const float4 peak = source->peak * (float4)(source->red, source->green, source->blue, 0.0f);
+            add_limit(view, u, v, peak, soft4, tile);
+        }
+    else
+        for (uint node = 0u; node < n * n; ++node) {
+            const float right = cells->numbers[CELL_NODES + node % n], below = cells->numbers[CELL_NODES + node / n];
+            const float u = fma(place.half_side * view->step_u, right, place.u);
+            const float v = fma(place.half_side * view->step_v, below, place.v);
+            add_limit(view, u, v, cells->limits[at * n * n + node], soft4, tile);
+        }
+    for (uint batch = 0u; batch < BATCHES; ++batch)
+        add_light(&tile->light[CUT_OF(tile) * BATCHES + batch], splat(1.0f), cells->levels[at]);
+}
 
 // Adds the light of the nodes of a cell.
 INLINE void add_nodes(const CrowdView *const view, const Cells *const cells, const Place place, const float angle,
@@ -168,7 +180,7 @@ INLINE void add_nodes(const CrowdView *const view, const Cells *const cells, con
 }
 
 // Adds the light of a cell at the nodes of a tile, softened by an angle: to whole rays by its limits, where the cell is
-// so small that it needs no depths; else by its nodes, or by its sources where they are fewer.
+// so small that it needs no depths; else by its nodes. Where its sources are fewer, they are taken by themselves.
 INLINE void add_cell(const CrowdView *const view, const Cells *const cells, const uint level, const uint code,
                      const float angle, NodesOfTile *const tile) {
     const uint n = view->nodes, at = cells_below(view, level) + code;
@@ -187,11 +199,10 @@ INLINE void add_cell(const CrowdView *const view, const Cells *const cells, cons
     }
     if (whole.first == whole.end)
         return;
-    const bool has_limits = level < view->shallow;
-    if (end - first <= (has_limits ? n * n / LIMITS_FOR_A_POINT : n * n * view->whole_depths))
+    if (level < view->shallow)
+        add_limits(view, cells, at, place, first, end, angle, tile);
+    else if (end - first <= n * n * view->whole_depths)
         add_sources(view, cells, first, end, angle, whole, tile);
-    else if (has_limits)
-        add_limits(view, cells, at, place.half_side, place.u, place.v, angle, tile);
     else
         add_nodes(view, cells, place, angle, true, whole, tile);
 }

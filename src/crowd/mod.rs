@@ -132,7 +132,7 @@ impl Crowd {
         format: FilmFormat,
     ) -> Result<Option<CrowdPlan>> {
         self.cost = FrameCost::default();
-        let is_own = |it: &Points| it.profile == self.profile && !it.points.is_empty();
+        let is_own = |it: &Points| it.crowd_profile() == self.profile && !it.points.is_empty();
         if !scene.points.iter().any(is_own) {
             return Ok(None);
         }
@@ -156,12 +156,12 @@ impl Crowd {
             _ => {
                 self.known = None;
                 let begun = Instant::now();
-                let sorted = self.sorter.see(scene, &sight, self.profile);
-                let (sorter, buffers) = (&self.sorter, &mut self.buffers);
+                let mut sorted = self.sorter.see(scene, &sight, self.profile);
+                let (sorter, buffers) = (&mut self.sorter, &mut self.buffers);
                 let count = sorted.sources as usize;
                 let cells = buffers.cells.reserve(compute, count)?;
                 let sources = buffers.sources.reserve(compute, count)?;
-                cells.fill(compute, count, |cells| {
+                sorted.occupied = cells.fill(compute, count, |cells| {
                     sources.fill(compute, count, |sources| sorter.sort(sources, cells))
                 })??;
                 buffers.starts.write(compute, &sorter.starts)?;

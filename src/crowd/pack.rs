@@ -344,6 +344,7 @@ fn chebyshev(count: usize) -> Vec<f64> {
 }
 
 /// Returns the code in which the bits of column and row alternate.
+#[inline]
 pub(super) fn morton(column: u32, row: u32) -> u32 {
     let spread = |mut number: u32| {
         number = (number | number << 8) & 0x00ff_00ff;

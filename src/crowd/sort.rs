@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::pack::{CrowdSource, Sorted, morton};
-use crate::scene::{CrowdSight, NEAREST, Points, Profile, Scene};
+use crate::scene::{CrowdSight, NEAREST, Points, Profile, Scene, Spreading};
 use crate::threads;
 
 /// Points that one thread sees at a time.
@@ -51,21 +51,26 @@ struct Piece {
 struct Bucket<'a> {
     sources: &'a mut [CrowdSource],
     cells: &'a mut [u32],
-    /// Where those of each of its cells begin.
-    starts: &'a [u32],
+    /// Where those of each of its cells begin, the first of them at `first`.
+    starts: &'a mut [u32],
+    first: u32,
+    occupied: u32,
 }
 
 impl Sorter {
-    /// Sees the points of a profile that are no brighter than the crowd's limit, and counts those of each cell.
+    /// Sees the points of a profile that are no brighter than the crowd's limit; cells that have some are counted when
+    /// they are sorted.
     pub(super) fn see(&mut self, scene: &Scene, sight: &CrowdSight, profile: Profile) -> Sorted {
         let lists: Vec<&Points> = scene
             .points
             .iter()
-            .filter(|it| it.profile == profile)
+            .filter(|it| it.crowd_profile() == profile)
             .collect();
-        let limit = scene.crowd_limit(profile);
+        let spreading = scene.spreading(profile);
         let bits = 2 * (sight.across.ilog2() + sight.top);
         let shift = bits.saturating_sub(BUCKET_BITS);
+        self.shift = shift;
+        self.starts.resize((1 << bits) + 1, 0);
         let mut count = 0;
         for (list, points) in lists.iter().enumerate() {
             for begin in (0..points.points.len()).step_by(PIECE) {
@@ -83,55 +88,33 @@ impl Sorter {
         threads::for_each_chunk(&mut self.pieces, 1, |_, piece| {
             let piece = &mut piece[0];
             let points = lists[piece.list];
-            piece.see(points, sight, limit, shift);
+            piece.see(points, sight, spreading, shift);
         });
-        self.count(bits, shift)
-    }
-
-    /// Counts what all threads saw.
-    fn count(&mut self, bits: u32, shift: u32) -> Sorted {
-        let Self {
-            starts,
-            rest,
-            pieces,
-            ..
-        } = self;
-        rest.clear();
+        self.rest.clear();
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-        for piece in pieces.iter() {
-            rest.extend_from_slice(&piece.rest);
+        let mut sources = 0;
+        for piece in &self.pieces {
+            self.rest.extend_from_slice(&piece.rest);
             (low, high) = (low.min(piece.t[0]), high.max(piece.t[1]));
-        }
-        starts.clear();
-        starts.resize((1 << bits) + 1, 0);
-        threads::for_each_chunk(&mut starts[..1 << bits], 1 << shift, |bucket, counts| {
-            for seen in pieces.iter().flat_map(|it| &it.buckets[bucket]) {
-                counts[seen.place(shift)] += 1;
-            }
-        });
-        let occupied = starts.iter().filter(|count| **count > 0).count();
-        let mut sum = 0;
-        for start in starts.iter_mut() {
-            sum += std::mem::replace(start, sum);
+            sources += piece.buckets.iter().map(Vec::len).sum::<usize>();
         }
         let t = [low, high].map(f64::from);
-        let t = if low <= high { t } else { [0.0; 2] };
-        self.shift = shift;
         Sorted {
-            sources: sum,
-            rest: (rest.len() / 6) as u32,
-            occupied: occupied as u32,
-            t,
+            sources: sources as u32,
+            rest: (self.rest.len() / 6) as u32,
+            occupied: 0,
+            t: if low <= high { t } else { [0.0; 2] },
         }
     }
 
-    /// Writes what was seen in the order of its cells, and the cell of each.
-    pub(super) fn sort(&self, mut sources: &mut [CrowdSource], mut cells: &mut [u32]) {
-        let in_bucket = 1 << self.shift;
-        let mut buckets = Vec::with_capacity(self.starts.len() / in_bucket);
-        for starts in self.starts[..self.starts.len() - 1].chunks(in_bucket) {
-            let end = self.starts[(buckets.len() + 1) * in_bucket];
-            let len = (end - starts[0]) as usize;
+    /// Writes what was seen in the order of its cells, and the cell of each; returns how many cells have some.
+    pub(super) fn sort(&mut self, mut sources: &mut [CrowdSource], mut cells: &mut [u32]) -> u32 {
+        let Self { starts, pieces, .. } = self;
+        let (shift, mut first) = (self.shift, 0);
+        let all = starts.len() - 1;
+        let mut buckets = Vec::with_capacity(all >> shift);
+        for (number, starts) in starts[..all].chunks_mut(1 << shift).enumerate() {
+            let len = pieces.iter().map(|it| it.buckets[number].len()).sum();
             let (own, others) = sources.split_at_mut(len);
             let (own_cells, other_cells) = cells.split_at_mut(len);
             (sources, cells) = (others, other_cells);
@@ -139,12 +122,26 @@ impl Sorter {
                 sources: own,
                 cells: own_cells,
                 starts,
+                first,
+                occupied: 0,
             });
+            first += len as u32;
         }
         threads::for_each_chunk(&mut buckets, 1, |number, bucket| {
-            let seen = self.pieces.iter().flat_map(|it| &it.buckets[number]);
-            bucket[0].fill(seen, self.shift);
+            let bucket = &mut bucket[0];
+            bucket.starts.fill(0);
+            pieces
+                .iter()
+                .for_each(|it| bucket.count(&it.buckets[number], shift));
+            bucket.begin();
+            let mut next = bucket.starts.to_vec();
+            for piece in pieces.iter() {
+                bucket.fill(&piece.buckets[number], &mut next, shift);
+            }
         });
+        let occupied = buckets.iter().map(|it| it.occupied).sum();
+        starts[all] = first;
+        occupied
     }
 }
 
@@ -157,31 +154,24 @@ impl Seen {
 
 impl Piece {
     /// Sees its points but for those brighter than a limit, and those where rays begin.
-    fn see(&mut self, points: &Points, sight: &CrowdSight, limit: f64, shift: u32) {
+    fn see(&mut self, points: &Points, sight: &CrowdSight, spreading: Spreading, shift: u32) {
         self.buckets.iter_mut().for_each(Vec::clear);
         self.rest.clear();
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
         let side = f64::from((8 * sight.across) << sight.top);
         let per_step = sight.step.map(|step| 1.0 / step);
-        let farthest = 1.001 * NEAREST * sight.near;
-        for index in self.points.clone() {
-            let light = points.light(index);
-            if light.max_element() > limit || light == DVec3::ZERO {
-                continue;
-            }
-            let [x, y, z] = sight.seen(points.points.position(index));
-            if z < farthest && sight.is_at_plane([x, y, z]) {
-                continue;
-            }
+        let nearest = NEAREST * sight.near;
+        let range = self.points.clone();
+        let Self { buckets, rest, .. } = self;
+        let mut add = |[x, y, z]: [f64; 3], light: DVec3| {
             let [red, green, blue] = light.as_vec3().to_array();
             let per_z = 1.0 / z;
             let column = (x * per_z - sight.first[0]) * per_step[0];
             let row = (y * per_z - sight.first[1]) * per_step[1];
             let is_in_grid = (0.0..side).contains(&column) && (0.0..side).contains(&row);
-            if z < NEAREST * sight.near || !is_in_grid {
-                self.rest
-                    .extend([x as f32, y as f32, z as f32, red, green, blue]);
-                continue;
+            if z < nearest || !is_in_grid {
+                rest.extend([x as f32, y as f32, z as f32, red, green, blue]);
+                return;
             }
             let (across, down) = ((column / 8.0) as u32, (row / 8.0) as u32);
             let t = (z as f32).ln();
@@ -193,20 +183,49 @@ impl Piece {
                 t,
                 light: [red, green, blue],
             };
-            self.buckets[(seen.cell >> shift) as usize].push(seen);
+            buckets[(seen.cell >> shift) as usize].push(seen);
+        };
+        if points.is_spread() {
+            let part = |place, light| add(sight.seen(place), light);
+            points.for_each_part(range, (sight, spreading), part);
+        } else {
+            points.for_each(range, |place, light| {
+                let seen = sight.seen(place);
+                let is_at_plane = seen[2] < 1.001 * nearest && sight.is_at_plane(seen);
+                let is_part = light.max_element() <= spreading.limit && light != DVec3::ZERO;
+                if is_part && !is_at_plane {
+                    add(seen, light);
+                }
+            });
         }
         self.t = [low, high];
     }
 }
 
 impl Bucket<'_> {
-    fn fill<'a>(&mut self, seen: impl Iterator<Item = &'a Seen>, shift: u32) {
-        let first = self.starts[0];
-        let mut next: Vec<u32> = self.starts.iter().map(|start| start - first).collect();
+    fn count(&mut self, seen: &[Seen], shift: u32) {
         for seen in seen {
-            let place = &mut next[seen.place(shift)];
+            self.starts[seen.place(shift)] += 1;
+        }
+    }
+
+    /// Finds where those of each cell begin, once they are counted.
+    fn begin(&mut self) {
+        let mut sum = self.first;
+        for start in self.starts.iter_mut() {
+            self.occupied += u32::from(*start > 0);
+            sum += std::mem::replace(start, sum);
+        }
+    }
+
+    /// Writes those of a piece, each at the next place of its cell.
+    fn fill(&mut self, seen: &[Seen], next: &mut [u32], shift: u32) {
+        for seen in seen {
+            let next = &mut next[seen.place(shift)];
+            let place = (*next - self.first) as usize;
+            *next += 1;
             let [red, green, blue] = seen.light;
-            self.sources[*place as usize] = CrowdSource {
+            self.sources[place] = CrowdSource {
                 x: seen.x,
                 y: seen.y,
                 t: seen.t,
@@ -216,8 +235,7 @@ impl Bucket<'_> {
                 peak: 0.0,
                 level: 0.0,
             };
-            self.cells[*place as usize] = seen.cell;
-            *place += 1;
+            self.cells[place] = seen.cell;
         }
     }
 }

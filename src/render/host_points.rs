@@ -24,14 +24,19 @@ pub struct HostPoints {
     pub positions: cl_mem,
     /// A buffer of float4, one for each position: linear RGB; the fourth is not looked at. `None`: all have `color`.
     pub lights: Option<cl_mem>,
+    /// A buffer of float4, one for each position: where the point was, and along the way from there lies its light, as
+    /// by [`PointList::with_previous`]; the fourth is not looked at. `None`: points have not moved.
+    pub previous: Option<cl_mem>,
     /// How many points there are, from the beginning of the buffers.
     pub count: usize,
     /// What the light of each is multiplied with.
     pub coefficient: f64,
     /// Linear RGB, of points that have no light of their own.
     pub color: DVec3,
-    /// How their light falls off: `Profile::Inverse` or `Profile::InverseSquare`.
+    /// How their light falls off, as of [`Points`].
     pub profile: Profile,
+    /// How thick they are, as of [`Points`]; world units, 0 for none.
+    pub radius: f64,
 }
 
 impl HostPoints {
@@ -41,10 +46,12 @@ impl HostPoints {
         Self {
             positions,
             lights: None,
+            previous: None,
             count,
             coefficient: 1.0,
             color: DVec3::ONE,
             profile: Profile::default(),
+            radius: 0.0,
         }
     }
 
@@ -53,32 +60,33 @@ impl HostPoints {
     /// # Safety
     /// The buffers are alive, and nothing writes there until the points are dropped.
     unsafe fn held(&self, compute: &Arc<Compute>) -> Result<Points> {
-        // SAFETY: the caller's promise, twice.
-        let rows = unsafe {
-            let positions = HeldRows::take(compute, POSITIONS, self.positions, self.count)?;
-            let lights = self
-                .lights
-                .map(|lights| HeldRows::take(compute, LIGHTS, lights, self.count));
-            HeldPoints {
-                positions,
-                lights: lights.transpose()?,
-            }
+        let take = |object, buffer| {
+            // SAFETY: the caller's promise.
+            unsafe { HeldRows::take(compute, object, buffer, self.count) }
+        };
+        let some = |object, buffer: Option<cl_mem>| buffer.map(|it| take(object, it)).transpose();
+        let rows = HeldPoints {
+            positions: take(POSITIONS, self.positions)?,
+            lights: some(LIGHTS, self.lights)?,
+            previous: some(PREVIOUS, self.previous)?,
         };
         let list = PointList::of_rows(Box::new(rows)).map_err(|reason| unfit("points", reason))?;
         let mut points = Points::new(list);
         (points.coefficient, points.color) = (self.coefficient, self.color);
-        points.profile = self.profile;
+        (points.profile, points.radius) = (self.profile, self.radius);
         Ok(points)
     }
 }
 
 const POSITIONS: &str = "positions of points";
 const LIGHTS: &str = "lights of points";
+const PREVIOUS: &str = "previous positions of points";
 
 /// A host's buffers, mapped.
 struct HeldPoints {
     positions: HeldRows,
     lights: Option<HeldRows>,
+    previous: Option<HeldRows>,
 }
 
 impl PointRows for HeldPoints {
@@ -88,6 +96,10 @@ impl PointRows for HeldPoints {
 
     fn lights(&self) -> Option<&[[f32; 4]]> {
         self.lights.as_ref().map(HeldRows::rows)
+    }
+
+    fn previous(&self) -> Option<&[[f32; 4]]> {
+        self.previous.as_ref().map(HeldRows::rows)
     }
 }
 

@@ -3,12 +3,12 @@
 
 use glam::DVec3;
 
-use super::{Crowd, List, Method, Points, Profile, Reduction, Scene, Sphere};
+use super::{Crowd, Method, Points, Profile, Reduction, Scene, Segment, Sphere};
 use crate::error::{Error, Result};
 use crate::image::ImageSize;
 
 /// A point of more than this share of a crowd's light is not part of it.
-const SHARE_OF_ONE: f64 = 1.0 / 500.0;
+pub(super) const SHARE_OF_ONE: f64 = 1.0 / 500.0;
 
 /// The highest cells have at most this width, as a slope; and so many levels there are at most.
 const WIDEST: f64 = 0.4;
@@ -25,6 +25,9 @@ const WIDTH_WITHOUT_DEPTH: f64 = 0.016;
 /// by themselves, as far as they are seen: their light changes fast with their depth. What is nearer still is smooth.
 const BEFORE_PLANE: f64 = 0.6;
 pub(crate) const NEAREST: f64 = 1.2;
+
+/// So many points are slow where each is drawn by itself.
+const MANY: usize = 10_000;
 
 /// Below this tolerance float32 has no digits to spare.
 const LEAST_TOLERANCE: f64 = 5e-5;
@@ -108,31 +111,50 @@ impl CrowdSight {
     }
 
     /// Returns where a point is as the eye sees it: right, down and ahead.
+    #[inline]
     pub(crate) fn seen(&self, point: DVec3) -> [f64; 3] {
         let way = point - self.eye;
-        [self.right, self.down, self.forward].map(|axis| way.dot(axis))
+        [
+            way.dot(self.right),
+            way.dot(self.down),
+            way.dot(self.forward),
+        ]
+    }
+
+    /// Returns whether depths from one to another are about where rays begin.
+    pub(super) fn meets_plane(&self, nearest: f64, farthest: f64) -> bool {
+        nearest < NEAREST * self.near && farthest >= BEFORE_PLANE * self.near
     }
 
     /// Returns whether a point, as the eye sees it, is where rays begin that are seen, or near there.
     pub(crate) fn is_at_plane(&self, [x, y, z]: [f64; 3]) -> bool {
-        let share = z / self.near;
         let is_there = |place: f64, first: f64, step: f64, begin: u32, size: u32| {
             let pixel = (place / z - first) / step - f64::from(begin);
             let margin = f64::from(8_u32 << self.top);
             (-margin..f64::from(size) + margin).contains(&pixel)
         };
         let ImageSize { width, height } = self.image;
-        (BEFORE_PLANE..NEAREST).contains(&share)
+        self.meets_plane(z, z)
             && is_there(x, self.first[0], self.step[0], self.left, width)
             && is_there(y, self.first[1], self.step[1], self.above, height)
     }
 }
 
+/// Points as sources of their own.
+#[derive(Debug, Default)]
+pub(super) struct Apart {
+    pub spheres: Vec<Sphere>,
+    pub segments: Vec<Segment>,
+}
+
 impl Points {
-    /// Returns whether they may be part of a crowd.
+    /// Returns whether they may be part of a crowd. Of `1/d^2` cores of the single points would show that light that is
+    /// spread is taken of; what `1/sqrt(d^2 + radius^2)` is spread over has no end.
     fn may_be_crowd(&self) -> bool {
-        let is_point = self.radius == 0.0 && self.reach.is_none() && self.points.sizes().is_none();
-        is_point
+        let is_part =
+            !self.is_spread() || self.points.has_trails() || self.profile == Profile::Smeared;
+        is_part
+            && self.reach.is_none()
             && self.points.least_light() * self.coefficient >= 0.0
             && self.coefficient >= 0.0
             && (self.points.has_lights() || self.color.min_element() >= 0.0)
@@ -144,7 +166,8 @@ impl Points {
         let (low, high) = (low - sight.eye, high - sight.eye);
         let (one, other) = (low * sight.forward, high * sight.forward);
         let [nearest, farthest] = [one.min(other), one.max(other)].map(DVec3::element_sum);
-        nearest < NEAREST * sight.near && farthest > BEFORE_PLANE * sight.near
+        let around = self.greatest_spread();
+        sight.meets_plane(nearest - around, farthest + around)
     }
 
     /// Returns the light of all, and of the brightest: of each the brightest channel.
@@ -161,19 +184,26 @@ impl Points {
 impl Scene {
     /// Returns the light of the brightest channel above which a point is not part of the crowd of a profile.
     pub(crate) fn crowd_limit(&self, profile: Profile) -> f64 {
-        let crowd = self.points.iter().filter(|it| it.profile == profile);
+        let crowd = self
+            .points
+            .iter()
+            .filter(|it| it.crowd_profile() == profile);
         SHARE_OF_ONE * crowd.map(|it| it.total().0).sum::<f64>()
     }
 
-    /// Adds those of its points that are where rays begin, and no brighter than a limit, as sources of their own.
-    fn add_points_at_plane(&self, sight: &CrowdSight, profile: Profile, spheres: &mut Vec<Sphere>) {
-        let limit = self.crowd_limit(profile);
-        let is_near = |it: &&Points| it.profile == profile && it.is_around_plane(sight);
-        for points in self.points.iter().filter(is_near) {
+    /// Adds those of its points as sources of their own that are brighter than the limit of their crowd, or where rays
+    /// begin.
+    fn add_points_apart(&self, sight: &CrowdSight, apart: &mut Apart) {
+        for points in self.points.iter() {
+            let limit = self.crowd_limit(points.crowd_profile());
+            let (is_near, is_bright) = (points.is_around_plane(sight), points.total().1 > limit);
+            if !is_near && !is_bright {
+                continue;
+            }
             for index in 0..points.points.len() {
-                let is_dim = || points.light(index).max_element() <= limit;
-                if sight.is_at_plane(sight.seen(points.points.position(index))) && is_dim() {
-                    spheres.push(points.sphere(index));
+                let is_bright = is_bright && points.light(index).max_element() > limit;
+                if is_bright || is_near && points.is_at_plane(index, sight) {
+                    points.add_apart(index, apart);
                 }
             }
         }
@@ -188,6 +218,15 @@ impl Scene {
         may && self.fading().is_none() && CrowdSight::new(self).is_ok()
     }
 
+    /// Returns the first table of many points that are no crowd and were to be one, and how many they are.
+    pub(super) fn many_points_apart(&self) -> Option<(usize, usize)> {
+        let is_wanted = self.integration.crowd == Crowd::Auto;
+        let may_be = self.allows_crowds();
+        let is_slow = |it: &Points| it.points.len() >= MANY && !(may_be && it.may_be_crowd());
+        let index = self.points.iter().position(|it| is_wanted && is_slow(it))?;
+        Some((index, self.points[index].points.len()))
+    }
+
     /// Returns the scene with those of its points as sources of their own that are not part of a crowd: all, unless
     /// `has_crowds` allows others and the scene does; `None`: there are none.
     pub(crate) fn with_crowds(&self, has_crowds: bool) -> Option<Self> {
@@ -195,35 +234,23 @@ impl Scene {
         let sight = has_crowds.then(|| CrowdSight::new(self).ok()).flatten();
         let is_crowd = |it: &&Points| it.may_be_crowd() && sight.is_some();
         let (crowd, apart): (Vec<&Points>, Vec<&Points>) = self.points.iter().partition(is_crowd);
-        let mut spheres: Vec<Sphere> = Vec::new();
-        for points in apart {
-            spheres.extend((0..points.points.len()).map(|index| points.sphere(index)));
+        let mut added = Apart::default();
+        for points in &apart {
+            (0..points.points.len()).for_each(|index| points.add_apart(index, &mut added));
         }
-        let is_all = spheres.is_empty();
-        let points: List<Points> = crowd.into_iter().cloned().collect();
+        let is_all = apart.iter().all(|it| it.points.is_empty());
         let mut scene = Self {
-            points,
-            spheres: List::new(),
+            points: crowd.into_iter().cloned().collect(),
             ..self.clone()
         };
-        for profile in [Profile::Inverse, Profile::InverseSquare] {
-            let limit = scene.crowd_limit(profile);
-            let bright = |it: &&Points| it.profile == profile && it.total().1 > limit;
-            for points in scene.points.iter().filter(bright) {
-                let all = 0..points.points.len();
-                let bright = all.filter(|index| points.light(*index).max_element() > limit);
-                spheres.extend(bright.map(|index| points.sphere(index)));
-            }
+        if let Some(sight) = &sight {
+            scene.add_points_apart(sight, &mut added);
         }
-        for profile in [Profile::Inverse, Profile::InverseSquare] {
-            if let Some(sight) = &sight {
-                scene.add_points_at_plane(sight, profile, &mut spheres);
-            }
-        }
-        if is_all && spheres.is_empty() {
+        if is_all && added.spheres.is_empty() && added.segments.is_empty() {
             return None;
         }
-        scene.spheres = self.spheres.iter().cloned().chain(spheres).collect();
+        scene.spheres.extend(added.spheres);
+        scene.segments.extend(added.segments);
         Some(scene)
     }
 }

@@ -1,12 +1,15 @@
 //! Points of light in any number: `light / d` or `light / d^2` each, d the distance to the point (2015, eq. 2; Sakai
 //! 2006). Where there are many, devices draw the crowd that they are, at a cost that hardly depends on their number.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::crowd_sight::Apart;
 use super::points::PointList;
 use super::values::{Checked, Fault, finite, vector};
-use super::{Falloff, Profile, Scene, Sphere};
+use super::{Falloff, Profile, Scene, Segment, Sphere};
 use crate::error::SceneError;
 
 /// How the light of [`Points`](Points) is summed.
@@ -42,9 +45,11 @@ pub struct Points {
     pub coefficient: f64,
     /// Linear RGB, of points that have no light of their own.
     pub color: DVec3,
-    /// How their light falls off.
+    /// How their light falls off: `Inverse`, `InverseSquare` or `Smeared`. With trails ([`PointList::with_previous`]),
+    /// `Inverse`.
     pub profile: Profile,
-    /// How thick they are: `d^2 + radius^2` stands for `d^2`; world units, 0 for none.
+    /// How thick they are: `d^2 + radius^2` stands for `d^2`, of `Smeared` the standard deviation; world units, 0 for
+    /// none.
     pub radius: f64,
     /// The distance at which their light ends, smoothly; world units. `None`: nowhere.
     pub reach: Option<f64>,
@@ -80,33 +85,71 @@ impl Points {
         self.coefficient * weight * own.map_or(self.color, DVec3::from)
     }
 
-    /// Returns a point as a source of its own.
-    pub(crate) fn sphere(&self, index: usize) -> Sphere {
-        Sphere {
-            center: self.points.position(index),
+    /// Calls `visit` with place and light of each of some points that have no weights.
+    #[inline]
+    pub(crate) fn for_each(&self, range: Range<usize>, mut visit: impl FnMut(DVec3, DVec3)) {
+        let (own, common) = (self.coefficient, self.coefficient * self.color);
+        self.points.for_each(range, |place, light| match light {
+            Some([red, green, blue]) => {
+                let light = DVec3::new(red.into(), green.into(), blue.into());
+                visit(place, own * light);
+            }
+            None => visit(place, common),
+        });
+    }
+
+    /// Returns how thick a point is.
+    pub(crate) fn radius(&self, index: usize) -> f64 {
+        self.points
+            .sizes()
+            .map_or(self.radius, |it| it[index].radius)
+    }
+
+    /// Adds a point as a source of its own; one that moved lights all of its way.
+    pub(super) fn add_apart(&self, index: usize, apart: &mut Apart) {
+        let (place, color) = (self.points.position(index), self.light(index));
+        let previous = self.points.previous_position(index);
+        if let Some(previous) = previous.filter(|it| *it != place) {
+            apart.segments.push(Segment {
+                coefficient: 1.0 / place.distance(previous),
+                color,
+                profile: Profile::Convolution,
+                ..Segment::new(previous, place)
+            });
+            return;
+        }
+        apart.spheres.push(Sphere {
+            center: place,
             coefficient: 1.0,
-            color: self.light(index),
+            color,
             profile: self.profile,
-            radius: self
-                .points
-                .sizes()
-                .map_or(self.radius, |it| it[index].radius),
+            radius: self.radius(index),
             reach: self.reach,
             ..Sphere::default()
-        }
+        });
     }
 
     pub(super) fn check(&self) -> Checked {
         finite("coefficient", self.coefficient)?;
         vector("color", self.color)?;
-        if !matches!(self.profile, Profile::Inverse | Profile::InverseSquare) {
-            let message =
-                "points have the profile \"inverse\" or \"inverse-square\"; others: [[sphere]]";
+        use Profile::{Inverse, InverseSquare, Smeared};
+        if !matches!(self.profile, Inverse | InverseSquare | Smeared) {
+            let message = "points have the profile \"inverse\", \"inverse-square\" or \"smeared\"; others: [[sphere]]";
             return Err(Fault::new("profile", message));
+        }
+        let is_thick = self.radius > 0.0 || self.reach.is_some() || self.points.sizes().is_some();
+        if self.points.has_trails() && (is_thick || self.profile != Inverse) {
+            let message = "trails are of points of the profile \"inverse\", without radius and reach: of others light \
+                           is not added up along lines";
+            return Err(Fault::new("previous", message));
         }
         let falloff = Falloff {
             profile: self.profile,
-            radius: self.radius,
+            radius: if self.points.is_empty() {
+                self.radius
+            } else {
+                self.radius(0)
+            },
             reach: self.reach,
         };
         falloff.check()

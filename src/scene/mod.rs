@@ -52,6 +52,7 @@ mod reduction;
 mod seen;
 mod simulation;
 mod source;
+mod spread;
 mod stamp;
 mod track;
 mod validate;
@@ -98,6 +99,7 @@ pub use simulation::{
     Response, Signs, SimulationSettings, Varied, Varying,
 };
 pub use source::*;
+pub(crate) use spread::Spreading;
 pub(crate) use stamp::SourcesStamp;
 pub use track::{Interpolation, Track, TrackLoop, TrackNoise, TrackValue};
 pub(crate) use validate::CheckedSources;

@@ -88,6 +88,7 @@ impl Scene {
             .chain(self.byte_colors())
             .chain(dark)
             .chain(self.no_particles())
+            .chain(self.slow_points())
             .chain(self.nothing_to_light())
             .chain(self.open_collider())
             .collect()
@@ -149,6 +150,16 @@ impl Scene {
             .position(|metaballs| metaballs.points.is_empty())?;
         let message = "it has no particle, so there is no surface: `points`, `file` or `lattice` says where they are";
         Some(SceneError::value(format!("metaballs[{index}]"), message))
+    }
+
+    /// Says that many points are drawn each by itself.
+    fn slow_points(&self) -> Option<SceneError> {
+        let (index, count) = self.many_points_apart()?;
+        let message = format!(
+            "{count} points are drawn each by itself, which takes long: what no crowd has is in docs/scenes.md; if \
+             that is meant, write crowd = \"never\" in [integration]"
+        );
+        Some(SceneError::value(format!("points[{index}]"), message))
     }
 
     /// Says that light is to be cast, and on nothing.

@@ -83,6 +83,26 @@ impl Frames {
 }
 
 #[test]
+fn trails_in_a_hosts_buffers_are_those_of_a_list_to_the_bit() {
+    let mut frames = Frames::new();
+    let (scene, rows, [before, _]) = (scene(), rows(3), rows(5));
+    let kept = Kept::new(&frames.host, &rows);
+    let previous = frames.host.floats(&before);
+    let mut points = [kept.points(Profile::Inverse)];
+    points[0].previous = Some(previous.get());
+    let found = frames.with_points(&scene, &points, None).unwrap();
+    let mut listed = listed(&scene, &rows, Profile::Inverse);
+    let resting = frames.renderer.render(&listed).unwrap();
+    assert_ne!(found, resting.as_slice(), "trails are of no account");
+    let place = |row: &[f32]| DVec3::new(row[0].into(), row[1].into(), row[2].into());
+    let list = listed.points[0].points.clone();
+    let moved = list.with_previous(before.chunks(4).map(place).collect());
+    listed.points[0].points = moved.unwrap();
+    let expected = frames.renderer.render(&listed).unwrap();
+    assert_eq!(found, expected.as_slice());
+}
+
+#[test]
 fn points_in_a_hosts_buffers_are_those_of_a_list_to_the_bit() {
     let mut frames = Frames::new();
     let scene = scene();

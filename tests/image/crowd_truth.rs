@@ -6,7 +6,8 @@ use energywave::scene::{Antialias, Camera, Decay, Measure, Method, PointList, Po
 use fastrand::Rng;
 use glam::DVec3;
 
-use super::crowds::{PROFILES, integral_up_to};
+use super::crowd_spread::light_of_one;
+use super::crowds::PROFILES;
 use crate::common;
 
 /// No multiple of a tile.
@@ -181,8 +182,8 @@ pub fn truth(scene: &Scene, pixel: usize) -> (DVec3, DVec3) {
     let points = &scene.points[0];
     let (mut light, mut all) = (DVec3::ZERO, DVec3::ZERO);
     let lights = points.points.lights().unwrap();
-    for (point, own) in points.points.positions().iter().zip(lights) {
-        let it = integral_up_to(&ray, end, *point, points.profile, scene.decay);
+    for (index, own) in lights.iter().enumerate() {
+        let it = light_of_one(&ray, end, points, index, scene.decay);
         let own = it * DVec3::from(own.map(f64::from));
         light += own;
         all += own.abs();

@@ -18,6 +18,7 @@ mod clip_depths; // holds depths of clip space to the surfaces that a rasteriser
 mod convolution;
 mod convolved_paths; // holds light that adds up over a core to its definition
 mod crowd_depths;
+mod crowd_spread;
 mod crowd_truth; // crowds of every shape and number are what float64 sums up
 mod crowds; // holds crowds of points to the sum over all of them
 mod defaults; // looks at a scene that names nothing

@@ -32,6 +32,16 @@ const BAD: &[(&str, &str, &str)] = &[
         "0 values for 1 positions",
     ),
     (
+        "positions = [[0, 0, 0]]\nprevious = [[0, 0, 0], [1, 1, 1]]\n",
+        "6:12: points[0].previous",
+        "2 values for 1 positions",
+    ),
+    (
+        "positions = [[0, 0, 0]]\nprevious = [[1, 0, 0]]\n",
+        "6:12: points[0].previous",
+        "of the profile \"inverse\"",
+    ),
+    (
         "profile = \"gaussian\"\n",
         "5:11: points[0].profile",
         "\"inverse-square\"",

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::error::{Error, SceneError};
 use crate::scene::colors::{read_color, read_some_colors};
@@ -27,6 +27,11 @@ pub(super) struct PointsTable {
     colors: Option<Vec<DVec3>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     coefficients: Option<Vec<f64>>,
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "read_previous"
+    )]
+    previous: Option<Vec<DVec3>>,
     /// From the folder of the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<PathBuf>,
@@ -47,10 +52,12 @@ keys! { pub(in crate::scene) POINTS_KEYS;
     positions: Vectors(0, None), WORLD, Otherwise("file"), "where the points are";
     colors: Colors(1), NONE, Otherwise("color"), "of each point";
     coefficients: Numbers(1, None), NONE, Otherwise("1"), "what the light of each point is multiplied with";
+    previous: Vectors(1, None), WORLD, Otherwise("no trails"), "where each point was; its light lies along the way";
     file: File, NONE, Otherwise("positions"), "points: .csv, .npy or .ply, also with colours, coefficients and radii";
     coefficient: ANY, NONE, Value("1"), "what the light of all points is multiplied with";
     color: Color, NONE, Value("[1, 1, 1]"), "of points that have none of their own";
-    profile: PROFILE, NONE, Value("\"inverse-square\""), "how their light falls off: \"inverse\" or \"inverse-square\"";
+    profile: PROFILE, NONE, Value("\"inverse-square\""),
+        "how their light falls off: \"inverse\", \"inverse-square\" or \"smeared\"";
     radius: NOT_NEGATIVE, WORLD, Value("0"), "how thick points are that have no radius of their own";
     reach: POSITIVE, WORLD, Otherwise("no end"), "where the light of a point ends, smoothly";
 }
@@ -61,6 +68,7 @@ impl Default for PointsTable {
             positions: Vec::new(),
             colors: None,
             coefficients: None,
+            previous: None,
             file: None,
             coefficient: 1.0,
             color: DVec3::ONE,
@@ -111,6 +119,7 @@ impl PointsTable {
             },
             colors: colors.filter(|_| is_given),
             coefficients: None,
+            previous: list.previous().map(<[_]>::to_vec),
             file,
             coefficient: points.coefficient,
             color: points.color,
@@ -124,7 +133,8 @@ impl PointsTable {
     /// Takes the points that another table has read, if it names the same.
     pub(super) fn share(&mut self, other: &Self) {
         let own = (&self.positions, &self.colors, &self.coefficients);
-        let is_same = own == (&other.positions, &other.colors, &other.coefficients);
+        let is_same = own == (&other.positions, &other.colors, &other.coefficients)
+            && self.previous == other.previous;
         if is_same && self.file == other.file && self.color == other.color {
             self.list = Arc::clone(&other.list);
         }
@@ -160,14 +170,8 @@ impl PointsTable {
         let lists = [
             ("colors", self.colors.as_ref().map(Vec::len)),
             ("coefficients", self.coefficients.as_ref().map(Vec::len)),
+            ("previous", self.previous.as_ref().map(Vec::len)),
         ];
-        let told = |error| match error {
-            Error::Scene(fault) => SceneError {
-                key: "positions".to_owned(),
-                ..fault
-            },
-            other => SceneError::value("positions", other.to_string()),
-        };
         if let Some(file) = &self.file {
             let inline = [("positions", (count > 0).then_some(count))];
             let named = inline.into_iter().chain(lists).find(|(_, it)| it.is_some());
@@ -187,14 +191,36 @@ impl PointsTable {
             }
         }
         let positions = self.positions.clone();
-        if self.colors.is_none() && self.coefficients.is_none() {
-            return PointList::new(positions).map_err(told);
-        }
         let light = |index: usize| {
             let color = self.colors.as_ref().map_or(self.color, |it| it[index]);
             let coefficient = self.coefficients.as_ref().map_or(1.0, |it| it[index]);
             (coefficient * color).as_vec3().to_array()
         };
-        PointList::with_lights(positions, (0..count).map(light).collect()).map_err(told)
+        let list = match self.colors.is_none() && self.coefficients.is_none() {
+            true => PointList::new(positions),
+            false => PointList::with_lights(positions, (0..count).map(light).collect()),
+        };
+        let list = list.map_err(|error| told("positions", error))?;
+        match &self.previous {
+            Some(previous) => list
+                .with_previous(previous.clone())
+                .map_err(|error| told("previous", error)),
+            None => Ok(list),
+        }
+    }
+}
+
+fn read_previous<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<Vec<DVec3>>, D::Error> {
+    read_vectors(reader).map(Some)
+}
+
+/// Says what is wrong with a list.
+fn told(key: &str, error: Error) -> SceneError {
+    match error {
+        Error::Scene(fault) => SceneError {
+            key: key.to_owned(),
+            ..fault
+        },
+        other => SceneError::value(key, other.to_string()),
     }
 }

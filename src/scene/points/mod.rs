@@ -11,6 +11,7 @@ mod npy;
 #[cfg(feature = "files")]
 mod ply;
 mod rows;
+mod trails;
 
 use std::fmt;
 use std::path::Path;
@@ -49,6 +50,8 @@ struct Points {
     places: Places,
     sizes: Option<Vec<PointSize>>,
     lights: Option<Vec<[f32; 3]>>,
+    /// Where each was.
+    previous: Option<Vec<DVec3>>,
     /// Least light, the sum of all, and the greatest: of each the brightest channel.
     light: [f64; 3],
     low: DVec3,
@@ -178,9 +181,13 @@ impl PointList {
         if let Some(lights) = &lights {
             check_lights(positions.len(), lights).map_err(fault)?;
         }
-        let light = match &lights {
-            Some(lights) => rows::light_of(lights.len(), |index| lights[index]),
-            None => [1.0, positions.len() as f64, 1.0],
+        let light = match (&lights, &sizes) {
+            (None, None) => [1.0, positions.len() as f64, 1.0],
+            (lights, sizes) => rows::light_of(positions.len(), |index| {
+                let weight = sizes.as_ref().map_or(1.0, |it| it[index].weight as f32);
+                let own = lights.as_ref().map_or([1.0; 3], |it| it[index]);
+                own.map(|channel| channel * weight)
+            }),
         };
         Ok(Self(Arc::new(Points {
             revision: new_revision(),
@@ -188,6 +195,7 @@ impl PointList {
             sizes,
             light,
             lights,
+            previous: None,
             low,
             high,
             origin,
@@ -217,8 +225,8 @@ impl PointList {
         self.0.light[0]
     }
 
-    /// Returns the light of all points, and of the brightest: of each the brightest channel; 1 for each where they have
-    /// none of their own.
+    /// Returns the light of all points, and of the brightest, weights included: of each the brightest channel; 1 for
+    /// each where they have none of their own.
     pub(crate) fn total_light(&self) -> (f64, f64) {
         (self.0.light[1], self.0.light[2])
     }
@@ -235,7 +243,7 @@ impl PointList {
         self.0.places.len() == 0
     }
 
-    /// Returns the corners of the box around all positions; of no particle, the origin twice.
+    /// Returns the corners of the box around all positions, previous ones too; of no particle, the origin twice.
     #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
         match self.is_empty() {
@@ -319,6 +327,7 @@ impl Default for PointList {
             places: Places::Own(Vec::new()),
             sizes: None,
             lights: None,
+            previous: None,
             light: [0.0; 3],
             low: DVec3::ZERO,
             high: DVec3::ZERO,
@@ -333,7 +342,7 @@ impl PartialEq for PointList {
     fn eq(&self, other: &Self) -> bool {
         let (own, others) = (&self.0, &other.0);
         let is_same = Arc::ptr_eq(own, others) || own.revision == others.revision;
-        let is_light_same = own.lights == others.lights;
+        let is_light_same = own.lights == others.lights && own.previous == others.previous;
         let listed = [own, others].map(|it| it.places.listed());
         let is_listed = [own, others].map(|it| it.places.len()) == listed.map(<[_]>::len);
         is_same

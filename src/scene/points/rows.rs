@@ -20,6 +20,9 @@ pub(crate) trait PointRows: Send + Sync {
 
     /// Their light, linear RGB; as many rows as there are positions.
     fn lights(&self) -> Option<&[[f32; 4]]>;
+
+    /// Where points were, as many rows.
+    fn previous(&self) -> Option<&[[f32; 4]]>;
 }
 
 /// Where the positions of a list are.
@@ -84,6 +87,7 @@ impl PointList {
             places: Places::Rows(rows),
             sizes: None,
             lights: None,
+            previous: None,
             light,
             low,
             high,
@@ -95,7 +99,35 @@ impl PointList {
     pub(crate) fn position(&self, index: usize) -> DVec3 {
         match &self.0.places {
             Places::Own(positions) => positions[index],
-            Places::Rows(rows) => DVec3::from(first_three(&rows.positions()[index]).map(f64::from)),
+            Places::Rows(rows) => place(&rows.positions()[index]),
+        }
+    }
+
+    /// Calls `visit` with each of some points: where it is, and the light that it has of its own. How the list has
+    /// them is asked once, not for each.
+    #[inline]
+    pub(crate) fn for_each(
+        &self,
+        range: Range<usize>,
+        mut visit: impl FnMut(DVec3, Option<[f32; 3]>),
+    ) {
+        match &self.0.places {
+            Places::Own(positions) => {
+                let positions = &positions[range.clone()];
+                match &self.0.lights {
+                    Some(lights) => (positions.iter().zip(&lights[range]))
+                        .for_each(|(place, light)| visit(*place, Some(*light))),
+                    None => positions.iter().for_each(|place| visit(*place, None)),
+                }
+            }
+            Places::Rows(rows) => {
+                let positions = &rows.positions()[range.clone()];
+                match rows.lights() {
+                    Some(lights) => (positions.iter().zip(&lights[range]))
+                        .for_each(|(row, light)| visit(place(row), Some(first_three(light)))),
+                    None => positions.iter().for_each(|row| visit(place(row), None)),
+                }
+            }
         }
     }
 
@@ -129,16 +161,22 @@ impl Part {
     fn look(&mut self, rows: &dyn PointRows, range: Range<usize>) {
         // Which no NaN is.
         let is_right = |row: &[f32; 4]| row[..3].iter().all(|it| it.abs() <= LARGEST as f32);
-        for (index, row) in range.clone().zip(&rows.positions()[range.clone()]) {
-            if !is_right(row) {
-                let [x, y, z, _] = row;
-                self.wrong = Some(format!(
-                    "point {index} is at {x}, {y}, {z}; coordinates are finite numbers up to {LARGEST:e}"
-                ));
-                return;
+        let places = [
+            (rows.positions(), "is"),
+            (rows.previous().unwrap_or_default(), "was"),
+        ];
+        for (places, is) in places.into_iter().filter(|(it, _)| !it.is_empty()) {
+            for (index, row) in range.clone().zip(&places[range.clone()]) {
+                if !is_right(row) {
+                    let [x, y, z, _] = row;
+                    self.wrong = Some(format!(
+                        "point {index} {is} at {x}, {y}, {z}; coordinates are finite numbers up to {LARGEST:e}"
+                    ));
+                    return;
+                }
+                let place = place(row);
+                (self.low, self.high) = (self.low.min(place), self.high.max(place));
             }
-            let place = DVec3::from(first_three(row).map(f64::from));
-            (self.low, self.high) = (self.low.min(place), self.high.max(place));
         }
         let Some(lights) = rows.lights() else {
             return;
@@ -151,6 +189,10 @@ impl Part {
             ));
         }
     }
+}
+
+pub(super) fn place(row: &[f32; 4]) -> DVec3 {
+    DVec3::new(row[0].into(), row[1].into(), row[2].into())
 }
 
 fn first_three(row: &[f32; 4]) -> [f32; 3] {
