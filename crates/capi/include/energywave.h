@@ -390,6 +390,42 @@ typedef struct energywave_cost {
 } energywave_cost;
 
 /**
+ * Points of light in a host's own buffers, in any number: a particle system lives there. They are drawn as the same
+ * `[[points]]` of a scene, to the bit.
+ */
+typedef struct energywave_points {
+  /**
+   * `sizeof` of this struct.
+   */
+  size_t struct_size;
+  /**
+   * A buffer of float4, one for each point: x, y and z, world units; the fourth is not looked at.
+   */
+  struct _cl_mem *positions;
+  /**
+   * A buffer of float4, one for each point: linear red, green and blue; the fourth is not looked at. NULL: all have
+   * `color`.
+   */
+  struct _cl_mem *lights;
+  /**
+   * How many points there are, from the beginning of the buffers.
+   */
+  size_t count;
+  /**
+   * What the light of each is multiplied with; it has no other value than what is given, and 0 is no light.
+   */
+  double coefficient;
+  /**
+   * Linear red, green and blue of points that have no lights of their own.
+   */
+  double color[3];
+  /**
+   * How their light falls off: `inverse` or `inverse-square`; NULL: `inverse-square`.
+   */
+  const char *profile;
+} energywave_points;
+
+/**
  * Where a frame of a host goes, and what it waits for.
  */
 typedef struct energywave_frame {
@@ -442,6 +478,18 @@ typedef struct energywave_frame {
    * Of a buffer: from row to row of depths, bytes; 0: no gap.
    */
   size_t depth_row_pitch;
+  /**
+   * Points of light besides the scene's, an array; NULL if there are none.
+   */
+  const struct energywave_points *points;
+  /**
+   * How many elements that array has.
+   */
+  uint32_t points_count;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
 } energywave_frame;
 
 #ifdef __cplusplus
@@ -683,13 +731,14 @@ energywave_status energywave_save(const struct energywave_scene *scene,
  * Enqueues a frame that is drawn into a host's buffer or image: the renderer is one of energywave_renderer_on_host.
  * The frame begins after the events and what is on the host's queue before it; what comes after it on an in-order
  * queue waits for it. Nothing here waits for the device, but for the compiler the first time that a scene needs other
- * kernels, and where surfaces meet the host's depths. `*event` is the frame's end, a marker on the host's queue, which
+ * kernels, and where surfaces meet the host's depths. With points this waits for what the frame waits for, and reads
+ * them: when it comes back they may be written again. `*event` is the frame's end, a marker on the host's queue, which
  * the caller releases; `event` may be NULL.
  *
  * # Safety
- * `frame` points to as many bytes as it says; its memory objects and events are alive, or NULL; its texts end with a
- * 0. Until the event is over nothing else uses the target, and nothing writes the depths. `event` is NULL, or points
- * to a place for an event.
+ * `frame` points to as many bytes as it says, and its points to as many structs; all memory objects and events are
+ * alive, or NULL; texts end with a 0. Until the event is over nothing else uses the target, and nothing writes the
+ * depths. `event` is NULL, or points to a place for an event.
  */
 energywave_status energywave_enqueue(struct energywave_renderer *renderer,
                                      const struct energywave_scene *scene,

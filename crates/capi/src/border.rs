@@ -174,6 +174,43 @@ pub unsafe fn read_struct<T: Versioned>(pointer: *const T, name: &str) -> Outcom
     }
 }
 
+/// Reads structs that lie one behind the other, each as large as the first says that it is; none need no memory.
+///
+/// # Safety
+/// The pointer is NULL, or points to so many structs, which nothing changes meanwhile.
+pub unsafe fn read_structs<T: Versioned>(
+    first: *const T,
+    count: u32,
+    name: &str,
+) -> Outcome<Vec<T>> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    check(first, name)?;
+    // SAFETY: the first field is the size.
+    let size = unsafe { first.cast::<usize>().read() };
+    let read = |index: usize| {
+        let name = format!("{name}[{index}]");
+        let pointer = first.wrapping_byte_add(index * size);
+        check(pointer, &name)?;
+        // SAFETY: the caller's promise, twice.
+        let (own, value) = unsafe {
+            let own = pointer.cast::<usize>().read();
+            (own, read_struct(pointer, &name)?)
+        };
+        match own == size {
+            true => Ok(value),
+            false => {
+                let message = format!(
+                    "{name}: struct_size {own}, that of the first is {size}; give all of an array the same"
+                );
+                Err(Failure::Call(Status::BadVersion, message))
+            }
+        }
+    };
+    (0..count as usize).map(read).collect()
+}
+
 /// Writes a struct, as much as the caller has of it; its first field stays.
 ///
 /// # Safety

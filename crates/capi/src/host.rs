@@ -1,13 +1,14 @@
-//! Frames into a host's OpenCL buffer or image, with its events, and behind its depths.
+//! Frames into a host's OpenCL buffer or image, with its events, behind its depths, and with its points.
 
 use std::ffi::c_char;
-use std::mem;
+use std::mem::{self, offset_of};
 use std::sync::{Arc, Mutex};
 
 use energywave::image::DepthAlong;
 use energywave::{HostDepth, HostDepthMemory, HostTarget, Renderer, Scene};
 
 use crate::border::{self, Versioned};
+use crate::host_points::{Points, points_of};
 use crate::registry;
 use crate::renderer::{RendererHandle, flag};
 use crate::scene::{SceneHandle, scene_of};
@@ -55,10 +56,18 @@ pub struct Frame {
     pub depth_offset: usize,
     /// Of a buffer: from row to row of depths, bytes; 0: no gap.
     pub depth_row_pitch: usize,
+    /// Points of light besides the scene's, an array; NULL if there are none.
+    pub points: *const Points,
+    /// How many elements that array has.
+    pub points_count: u32,
+    /// 0.
+    pub reserved: u32,
 }
 
 // SAFETY: it begins with its size, and its fields are numbers and addresses.
-unsafe impl Versioned for Frame {}
+unsafe impl Versioned for Frame {
+    const FIRST: usize = offset_of!(Frame, points);
+}
 
 impl Frame {
     fn target(&self) -> Outcome<HostTarget> {
@@ -116,13 +125,14 @@ fn wrong_kind(name: &str, kind: u32) -> crate::status::Failure {
 /// Enqueues a frame that is drawn into a host's buffer or image: the renderer is one of energywave_renderer_on_host.
 /// The frame begins after the events and what is on the host's queue before it; what comes after it on an in-order
 /// queue waits for it. Nothing here waits for the device, but for the compiler the first time that a scene needs other
-/// kernels, and where surfaces meet the host's depths. `*event` is the frame's end, a marker on the host's queue, which
+/// kernels, and where surfaces meet the host's depths. With points this waits for what the frame waits for, and reads
+/// them: when it comes back they may be written again. `*event` is the frame's end, a marker on the host's queue, which
 /// the caller releases; `event` may be NULL.
 ///
 /// # Safety
-/// `frame` points to as many bytes as it says; its memory objects and events are alive, or NULL; its texts end with a
-/// 0. Until the event is over nothing else uses the target, and nothing writes the depths. `event` is NULL, or points
-/// to a place for an event.
+/// `frame` points to as many bytes as it says, and its points to as many structs; all memory objects and events are
+/// alive, or NULL; texts end with a 0. Until the event is over nothing else uses the target, and nothing writes the
+/// depths. `event` is NULL, or points to a place for an event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn energywave_enqueue(
     renderer: *mut RendererHandle,
@@ -137,21 +147,25 @@ pub unsafe extern "C" fn energywave_enqueue(
         let frame = unsafe { border::read_struct(frame, "frame") }?;
         let target = frame.target()?;
         let count = frame.wait_count as usize;
-        // SAFETY: the same, three times.
-        let (depth, wait_list, event) = unsafe {
+        // SAFETY: the same, four times.
+        let (depth, points, wait_list, event) = unsafe {
             let depth = frame.depth(&scene)?;
+            let points = points_of(frame.points, frame.points_count, "frame.points")?;
             let wait_list = border::values(frame.wait_list, count, "frame.wait_list")?;
             let event = match event.is_null() {
                 true => None,
                 false => Some(border::out(event, "event")?),
             };
-            (depth, wait_list, event)
+            (depth, points, wait_list, event)
         };
         let events: Vec<_> = wait_list.iter().map(|event| event.cast()).collect();
         let mut renderer = registry::lock(&kept)?;
         // SAFETY: the same.
         let drawn = unsafe {
             match &depth {
+                depth if !points.is_empty() => {
+                    renderer.enqueue_points(&scene, target, &points, depth.as_ref(), &events)
+                }
                 Some(depth) => renderer.enqueue_behind(&scene, target, depth, &events),
                 None => renderer.enqueue(&scene, target, &events),
             }

@@ -30,3 +30,4 @@ mod rays;
 mod picture;
 
 mod host;
+mod host_points;

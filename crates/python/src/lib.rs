@@ -9,6 +9,7 @@ mod failure;
 mod opencl;
 mod overrides;
 mod picture;
+mod points;
 mod renderer;
 mod scene;
 mod watch;

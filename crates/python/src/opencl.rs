@@ -6,11 +6,12 @@ use std::ffi::c_void;
 use energywave::image::DepthAlong;
 use energywave::opencl3::event::Event;
 use energywave::scene::Scene;
-use energywave::{HostDepth, HostDepthMemory, HostTarget, RendererOptions, Result};
+use energywave::{HostDepth, HostDepthMemory, HostPoints, HostTarget, RendererOptions, Result};
 use pyo3::prelude::*;
 
 use crate::failure::{exception, misuse};
 use crate::overrides::word;
+use crate::points::BufferPoints;
 use crate::renderer::Renderer;
 
 /// What an `energywave.HostDepth` says.
@@ -88,7 +89,7 @@ fn type_name(object: &Bound<'_, PyAny>) -> String {
 }
 
 /// Returns the handle that an object of pyopencl's has.
-fn handle(object: &Bound<'_, PyAny>, place: &str) -> PyResult<usize> {
+pub fn handle(object: &Bound<'_, PyAny>, place: &str) -> PyResult<usize> {
     let pointer = object
         .getattr("int_ptr")
         .and_then(|it| it.extract::<usize>());
@@ -125,12 +126,13 @@ pub fn renderer_on(py: Python<'_>, queue: &Bound<'_, PyAny>) -> PyResult<energyw
     opened.map_err(|error| exception(py, &error))
 }
 
-/// Enqueues a frame, behind depths if there are some, and returns the handle of its event, whose owner is the caller.
+/// Enqueues a frame, behind depths and with points in buffers if there are some, and returns the handle of its event,
+/// whose owner is the caller.
 pub fn enqueue(
     renderer: &Renderer,
     scene: &Scene,
     (target, is_image): &(Bound<'_, PyAny>, bool),
-    depth: Option<&Bound<'_, PyAny>>,
+    (depth, points): (Option<&Bound<'_, PyAny>>, &[BufferPoints]),
     wait_for: &[Bound<'_, PyAny>],
 ) -> PyResult<usize> {
     let py = target.py();
@@ -145,13 +147,17 @@ pub fn enqueue(
             false => HostTarget::Buffer(memory),
         };
         let events: Vec<_> = events.iter().map(|event| *event as *mut c_void).collect();
+        let depth = depth.map(|depth| depth.of_host(scene)).transpose()?;
+        let points: Vec<HostPoints> = points.iter().map(BufferPoints::of_host).collect();
         // SAFETY: the objects that own these handles live until this returns; OpenCL retains what its commands use.
-        // What else is done with target and depths meanwhile is the caller's affair, as with any command of a queue.
+        // What else is done with target, depths and points meanwhile is the caller's affair, as with any command of a
+        // queue.
         let event: Event = unsafe {
-            match depth {
-                Some(depth) => {
-                    renderer.enqueue_behind(scene, target, &depth.of_host(scene)?, &events)
+            match &depth {
+                depth if !points.is_empty() => {
+                    renderer.enqueue_points(scene, target, &points, depth.as_ref(), &events)
                 }
+                Some(depth) => renderer.enqueue_behind(scene, target, depth, &events),
                 None => renderer.enqueue(scene, target, &events),
             }
         }?;

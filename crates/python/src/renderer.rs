@@ -16,6 +16,7 @@ use pyo3::types::PyDict;
 use crate::devices::{choose, record};
 use crate::failure::{exception, misuse};
 use crate::overrides::Overrides;
+use crate::points::{with_rows, with_rows_alone};
 use crate::scene::OpenedScene;
 use crate::watch::{Progress, watched};
 
@@ -145,15 +146,17 @@ impl Renderer {
         Ok(Self::with(renderer, Vec::new()))
     }
 
-    #[pyo3(signature = (scene, overrides, progress = None))]
+    #[pyo3(signature = (scene, overrides, progress = None, points = Vec::new()))]
     fn render<'py>(
         &self,
         py: Python<'py>,
         scene: &OpenedScene,
         overrides: &Bound<'py, PyDict>,
         progress: Option<Py<PyAny>>,
+        points: Vec<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray3<f32>>> {
-        let scene = scene.frame(py, &Overrides::of(overrides)?)?;
+        let scene = scene.frame_beside(py, &Overrides::of(overrides)?, !points.is_empty())?;
+        let scene = with_rows_alone(py, scene, &points)?;
         let shape = [scene.image.height as usize, scene.image.width as usize, 4];
         let image = PyArray3::zeros(py, shape, false);
         {
@@ -166,7 +169,7 @@ impl Renderer {
         Ok(image)
     }
 
-    #[pyo3(signature = (scene, array, overrides, progress = None))]
+    #[pyo3(signature = (scene, array, overrides, progress = None, points = Vec::new()))]
     fn render_into<'py>(
         &self,
         py: Python<'py>,
@@ -174,8 +177,10 @@ impl Renderer {
         mut array: PyReadwriteArray3<'py, f32>,
         overrides: &Bound<'py, PyDict>,
         progress: Option<Py<PyAny>>,
+        points: Vec<Bound<'py, PyAny>>,
     ) -> PyResult<()> {
-        let scene = scene.frame(py, &Overrides::of(overrides)?)?;
+        let scene = scene.frame_beside(py, &Overrides::of(overrides)?, !points.is_empty())?;
+        let scene = with_rows_alone(py, scene, &points)?;
         check_target(py, array.shape(), &scene)?;
         let is_in_order = array.is_c_contiguous();
         let (true, Ok(target)) = (is_in_order, array.as_slice_mut()) else {
@@ -202,7 +207,7 @@ impl Renderer {
         let read = Overrides::of(overrides)?;
         let open = scene.open_at(read.time, rate);
         if open.is_empty() {
-            return self.render(py, scene, overrides, progress);
+            return self.render(py, scene, overrides, progress, Vec::new());
         }
         let mean = self.work(py, progress, |renderer, progress| {
             let mut scene_at = |time| scene.at(&read.at(time));
@@ -267,12 +272,20 @@ impl Renderer {
         py: Python<'py>,
         scene: &OpenedScene,
         target: (Bound<'py, PyAny>, bool),
-        depth: Option<Bound<'py, PyAny>>,
+        depth_and_points: (Option<Bound<'py, PyAny>>, Vec<Bound<'py, PyAny>>),
         wait_for: Vec<Bound<'py, PyAny>>,
         overrides: &Bound<'py, PyDict>,
     ) -> PyResult<usize> {
-        let scene = scene.frame(py, &Overrides::of(overrides)?)?;
-        crate::opencl::enqueue(self, &scene, &target, depth.as_ref(), &wait_for)
+        let (depth, points) = depth_and_points;
+        let scene = scene.frame_beside(py, &Overrides::of(overrides)?, !points.is_empty())?;
+        let (scene, in_buffers) = with_rows(scene, &points)?;
+        crate::opencl::enqueue(
+            self,
+            &scene,
+            &target,
+            (depth.as_ref(), &in_buffers),
+            &wait_for,
+        )
     }
 
     /// What the devices are, a dictionary each.

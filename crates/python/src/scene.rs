@@ -12,6 +12,9 @@ use pyo3::types::PyDict;
 use crate::failure::{exception, exception_of_object, warn};
 use crate::overrides::Overrides;
 
+/// What the library says of a scene without light.
+const DARK: &str = "no source of light";
+
 /// A scene that was read. It is the fastest to draw often: what it is at a time is worked out once.
 #[pyclass(frozen, module = "energywave")]
 #[derive(Debug)]
@@ -34,6 +37,16 @@ impl OpenedScene {
 
     /// Returns the scene with values replaced, and at their time; warns of what was hardly meant in it.
     pub fn frame(&self, py: Python<'_>, overrides: &Overrides) -> PyResult<Arc<Scene>> {
+        self.frame_beside(py, overrides, false)
+    }
+
+    /// Returns the same, where there may be other light, so that the scene needs none.
+    pub fn frame_beside(
+        &self,
+        py: Python<'_>,
+        overrides: &Overrides,
+        is_lit: bool,
+    ) -> PyResult<Arc<Scene>> {
         if let Some((of, scene)) = &*self.kept.lock().unwrap_or_else(PoisonError::into_inner)
             && of == overrides
         {
@@ -46,7 +59,10 @@ impl OpenedScene {
         });
         let (scene, warnings) = read.map_err(|error| failure(py, error, self.is_object))?;
         for warning in warnings {
-            warn(py, "SceneWarning", &self.words_of(warning))?;
+            let words = self.words_of(warning);
+            if !(is_lit && words.contains(DARK)) {
+                warn(py, "SceneWarning", &words)?;
+            }
         }
         let scene = Arc::new(scene);
         let kept = Some((*overrides, scene.clone()));

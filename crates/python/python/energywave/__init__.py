@@ -28,7 +28,7 @@ from ._errors import (
     SceneWarning,
     UnsupportedError,
 )
-from ._host import HostDepth
+from ._host import HostDepth, HostPoints
 from ._picture import Picture, save, tone_map
 from ._render import (
     Renderer,
@@ -47,9 +47,10 @@ from ._tables import __all__ as _tables_all
 __version__ = "0.1.0"
 
 __all__ = [
-    "Animation", "ArgumentError", "Device", "DeviceError", "Devices", "Error", "HostDepth", "HostError", "InputError",
-    "NoDeviceWarning", "NoSuchDeviceError", "NoSuchFileError", "OpenedScene", "OutOfMemoryError", "OutputError",
-    "Picture", "Renderer", "Scene", "SceneError", "SceneWarning", "Table", "UnsupportedError", "animate", "devices",
-    "error_map", "integrate", "irradiance", "open_scene", "rays", "render", "save", "tone_map",
+    "Animation", "ArgumentError", "Device", "DeviceError", "Devices", "Error", "HostDepth", "HostError",
+    "HostPoints", "InputError", "NoDeviceWarning", "NoSuchDeviceError", "NoSuchFileError", "OpenedScene",
+    "OutOfMemoryError", "OutputError", "Picture", "Renderer", "Scene", "SceneError", "SceneWarning", "Table",
+    "UnsupportedError", "animate", "devices", "error_map", "integrate", "irradiance", "open_scene", "rays", "render",
+    "save", "tone_map",
 ]  # fmt: skip
 __all__ += _tables_all

@@ -1,12 +1,12 @@
 """The native half of the package."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._host import HostDepth
+from ._host import HostDepth, HostPoints
 
 _Overrides = Mapping[str, object]
 _Progress = Optional[Callable[[float], object]]
@@ -46,9 +46,16 @@ class Renderer:
     def device_records(self) -> List[_Record]: ...
     @property
     def last_cost(self) -> Dict[str, float]: ...
-    def render(self, scene: OpenedScene, overrides: _Overrides, progress: _Progress = None) -> NDArray[np.float32]: ...
+    def render(
+        self, scene: OpenedScene, overrides: _Overrides, progress: _Progress = None, points: Sequence[HostPoints] = ()
+    ) -> NDArray[np.float32]: ...
     def render_into(
-        self, scene: OpenedScene, array: NDArray[np.float32], overrides: _Overrides, progress: _Progress = None
+        self,
+        scene: OpenedScene,
+        array: NDArray[np.float32],
+        overrides: _Overrides,
+        progress: _Progress = None,
+        points: Sequence[HostPoints] = (),
     ) -> None: ...
     def render_frame(
         self, scene: OpenedScene, rate: float, overrides: _Overrides, progress: _Progress = None
@@ -68,7 +75,7 @@ class Renderer:
         self,
         scene: OpenedScene,
         target: Tuple[Any, bool],
-        depth: Optional[HostDepth],
+        depth_and_points: Tuple[Optional[HostDepth], List[HostPoints]],
         wait_for: List[Any],
         overrides: _Overrides,
     ) -> int: ...

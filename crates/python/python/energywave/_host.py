@@ -1,9 +1,17 @@
-"""Memory of pyopencl's: what is an image, and depths that end rays."""
+"""What hosts have in memory of their own: depths that end rays, points of light; and which memory is an image."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Sequence, Union
+
+import numpy as np
+
+from ._errors import mistype, misuse
+from ._given import numbers
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -40,6 +48,79 @@ class HostDepth:
     def of(cls, depth: Any) -> "HostDepth":
         """Returns depths; a buffer or an image alone has lengths along the rays."""
         return depth if isinstance(depth, HostDepth) else cls(depth)
+
+
+@dataclass(frozen=True)
+class HostPoints:
+    """Points of light, in any number, that are others in every frame: a particle system has them.
+
+    They are drawn as the same :class:`Points` of a scene, to the bit; the scene stays as it is, and is read once. They
+    are arrays of NumPy, or in :meth:`Renderer.enqueue` also buffers of pyopencl's; in a frame they are read anew.
+
+    Attributes:
+        positions: float32 of shape (n, 4): x, y and z, world units; the fourth is not looked at. Other numbers, and
+            (n, 3), are copied to that. Or a ``pyopencl.Buffer`` of float4.
+        lights: linear RGB of each, likewise; None: all have ``color``.
+        count: how many points of a buffer, from its beginning; None: as many as it has. Arrays have as many as they
+            have.
+        coefficient: what the light of each is multiplied with.
+        color: linear RGB of points that have no lights of their own.
+        profile: how their light falls off: ``"inverse"`` or ``"inverse-square"``.
+    """
+
+    positions: Any
+    lights: Any = None
+    count: Optional[int] = None
+    coefficient: float = 1.0
+    color: Sequence[float] = (1.0, 1.0, 1.0)
+    profile: str = "inverse-square"
+
+    @property
+    def is_buffer(self) -> bool:
+        """Whether positions are in a buffer, not an array."""
+        return hasattr(self.positions, "int_ptr")
+
+    @classmethod
+    def listed(cls, points: "Union[HostPoints, Iterable[HostPoints]]") -> "List[HostPoints]":
+        """Returns points, one or several, as rows of four or buffers."""
+        several = [points] if isinstance(points, HostPoints) else points
+        remedy = "give an energywave.HostPoints, or several"
+        try:
+            found = list(several)
+        except TypeError:
+            raise mistype("points", f"it is of type {type(points).__name__}", remedy) from None
+        for index, one in enumerate(found):
+            if not isinstance(one, HostPoints):
+                raise mistype(f"points[{index}]", f"it is of type {type(one).__name__}", remedy)
+        return [one._as_rows(f"points[{index}]") for index, one in enumerate(found)]
+
+    def _as_rows(self, place: str) -> "HostPoints":
+        if self.lights is not None and hasattr(self.lights, "int_ptr") != self.is_buffer:
+            reason = f"it is of type {type(self.lights).__name__}, positions {type(self.positions).__name__}"
+            raise mistype(f"{place}.lights", reason, "give two arrays or two buffers")
+        if self.is_buffer:
+            return replace(self, count=self.positions.size // 16) if self.count is None else self
+        if self.count is not None:
+            raise misuse(f"{place}.count", "an array has as many points as rows", "give a part of the array")
+        positions = _rows(f"{place}.positions", self.positions)
+        lights = None if self.lights is None else _rows(f"{place}.lights", self.lights)
+        if lights is not None and len(lights) != len(positions):
+            reason = f"{len(lights)} rows, and {len(positions)} positions"
+            raise misuse(f"{place}.lights", reason, "give as many of both")
+        return replace(self, positions=positions, lights=lights)
+
+
+def _rows(name: str, given: Any) -> "NDArray[np.float32]":
+    """Returns rows of four float32."""
+    remedy = "give an array of (n, 4), or (n, 3), or a pyopencl.Buffer of float4"
+    rows: "NDArray[np.float32]" = numbers(name, given, np.float32, remedy)
+    if rows.ndim != 2 or rows.shape[1] not in (3, 4):
+        raise misuse(name, f"an array of shape {list(rows.shape)}", remedy)
+    if rows.shape[1] == 4:
+        return np.ascontiguousarray(rows)
+    four = np.zeros((len(rows), 4), np.float32)
+    four[:, :3] = rows
+    return four
 
 
 def is_image(memory: Any) -> bool:

@@ -12,7 +12,7 @@ from ._animation import Animation
 from ._devices import Device
 from ._errors import mistype, misuse
 from ._given import numbers
-from ._host import HostDepth, is_image
+from ._host import HostDepth, HostPoints, is_image
 from ._scene import open_scene
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ._overrides import Overrides
 
     Progress = Callable[[float], object]
+    Given = Union[HostPoints, Iterable[HostPoints]]
 
 
 class Renderer:
@@ -93,28 +94,38 @@ class Renderer:
         return f"<energywave renderer on {names}>"
 
     def render(
-        self, scene: Any, *, progress: "Optional[Progress]" = None, **overrides: "Unpack[Overrides]"
+        self,
+        scene: Any,
+        *,
+        points: "Given" = (),
+        progress: "Optional[Progress]" = None,
+        **overrides: "Unpack[Overrides]",
     ) -> "NDArray[np.float32]":
         """Returns the light of a scene: (height, width, 4) of float32, linear RGBA from the top left, alpha 1.
 
         Light has no unit and no exposure; :func:`tone_map` and :func:`save` make pictures of it.
 
+        Args:
+            points: points of light besides the scene's: :class:`HostPoints` of arrays, or several.
+
         Raises:
             SceneError: for a scene that cannot be drawn.
+            UnsupportedError: for arrays that are no points; an ArgumentError for what is no array of numbers.
             DeviceError, OutOfMemoryError: if the device fails.
             KeyboardInterrupt: after Ctrl-C.
         """
-        return self._native.render(open_scene(scene), overrides, progress)
+        return self._native.render(open_scene(scene), overrides, progress, HostPoints.listed(points))
 
     def render_into(
         self,
         scene: Any,
         array: "NDArray[np.float32]",
         *,
+        points: "Given" = (),
         progress: "Optional[Progress]" = None,
         **overrides: "Unpack[Overrides]",
     ) -> None:
-        """Draws into an array that is there: float32, (height, width, 4), in C's order.
+        """Draws into an array that is there: float32, (height, width, 4), in C's order. Points are as of `render`.
 
         Raises:
             UnsupportedError: for an array of another shape or order. Otherwise as :meth:`render`; what the array holds
@@ -126,7 +137,7 @@ class Renderer:
             raise misuse("array", f"it is {found}", remedy)
         if not array.flags.writeable:
             raise misuse("array", "it is read-only", "give one that may be written")
-        self._native.render_into(open_scene(scene), array, overrides, progress)
+        self._native.render_into(open_scene(scene), array, overrides, progress, HostPoints.listed(points))
 
     def integrate(
         self,
@@ -229,32 +240,35 @@ class Renderer:
         target: Any,
         *,
         depth: Any = None,
+        points: "Given" = (),
         wait_for: Iterable[Any] = (),
         **overrides: "Unpack[Overrides]",
     ) -> Any:
         """Enqueues a frame that is drawn into memory of pyopencl's, on a renderer that was made with a ``queue``.
 
-        Nothing is read back, and nothing waits but for the compiler, the first time, and where surfaces of a scene meet
-        depths. What comes after it on an in-order queue waits for the frame.
+        Nothing is read back, and nothing waits but for the compiler, the first time, where surfaces of a scene meet
+        depths, and for points in buffers. What comes after it on an in-order queue waits for the frame.
 
         Args:
             target: a ``pyopencl.Buffer`` of 16 * width * height bytes (float32 RGBA), or a 2D ``pyopencl.Image`` of
                 RGBA with float32 or half floats; READ_WRITE.
             depth: depths that end the rays, in the place of the scene's own: a :class:`HostDepth`, or a buffer or an
                 image of lengths along the rays.
+            points: points of light besides the scene's: :class:`HostPoints`, or several. Of buffers they are read after
+                what the frame waits for; when the call comes back they may be written again.
             wait_for: events that the frame waits for.
 
         Returns:
             The ``pyopencl.Event`` of its end. Until then nothing else may use the target, and nothing write the depths.
 
         Raises:
-            HostError: for a target, depths or an event that don't fit; nothing was enqueued.
+            HostError: for a target, depths, points or an event that don't fit; nothing was enqueued.
         """
         import pyopencl
 
         depths = None if depth is None else HostDepth.of(depth)
-        into = (target, is_image(target))
-        event = self._native.enqueue(open_scene(scene), into, depths, list(wait_for), overrides)
+        into, besides = (target, is_image(target)), (depths, HostPoints.listed(points))
+        event = self._native.enqueue(open_scene(scene), into, besides, list(wait_for), overrides)
         return pyopencl.Event.from_int_ptr(event, retain=False)
 
 
@@ -301,14 +315,19 @@ def _kept(device: Any, reference: bool) -> Renderer:
 
 
 def render(
-    scene: Any, *, device: Any = None, reference: bool = False, **overrides: "Unpack[Overrides]"
+    scene: Any,
+    *,
+    points: "Given" = (),
+    device: Any = None,
+    reference: bool = False,
+    **overrides: "Unpack[Overrides]",
 ) -> "NDArray[np.float32]":
     """Returns the light of a scene: (height, width, 4) of float32, linear RGBA from the top left.
 
     As :meth:`Renderer.render`, by a renderer that is kept for this thread. ``reference=True`` computes in float64, by
     another method, and rounds the light to float32 (:func:`rays` says how to get all of its digits).
     """
-    return _kept(device, reference).render(scene, **overrides)
+    return _kept(device, reference).render(scene, points=points, **overrides)
 
 
 def integrate(
