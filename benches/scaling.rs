@@ -6,6 +6,8 @@
 #![allow(clippy::unwrap_used)] // a bench that fails stops
 
 mod common;
+#[path = "common/plot.rs"]
+mod plot;
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -15,7 +17,8 @@ use energywave::papers::{Table, exact_cost, measure};
 use energywave::scene::{Curve, Method, Profile, Sampling, Sphere};
 use energywave::{Device, Renderer, Scene};
 use glam::DVec3;
-use plotters::prelude::*;
+use plot::Line;
+use plotters::style::{Color, RGBColor};
 
 const TIME: Duration = Duration::from_secs(1);
 const WIDTHS: [u32; 6] = [256, 512, 1024, 2048, 4096, 8192];
@@ -41,17 +44,11 @@ impl Series {
     fn exponents(&self, from: u32) -> (f64, f64) {
         let points: Vec<&Point> = self.points.iter().filter(|p| p.size >= from).collect();
         let fit = |value: fn(&Point) -> f64| {
-            let log = |p: &&Point| (f64::from(p.size).ln(), value(p).ln());
-            let count = points.len() as f64;
-            let (x, y) = points.iter().map(log).fold((0.0, 0.0), |sum, (x, y)| {
-                (sum.0 + x / count, sum.1 + y / count)
-            });
-            let (mut above, mut below) = (0.0, 0.0);
-            for (px, py) in points.iter().map(log) {
-                above += (px - x) * (py - y);
-                below += (px - x) * (px - x);
-            }
-            above / below
+            let pairs: Vec<_> = points
+                .iter()
+                .map(|p| (f64::from(p.size), value(p)))
+                .collect();
+            plot::power(&pairs)
         };
         (fit(|p| p.seconds), fit(|p| p.integrals))
     }
@@ -199,54 +196,22 @@ fn table(text: &mut String, heading: &str, series: &[Series], fit_from: u32) {
 
 /// Seconds a frame against the size, both logarithmic.
 fn plot(path: &str, x_name: &str, series: &[Series]) {
-    let area = SVGBackend::new(path, (720, 440)).into_drawing_area();
-    area.fill(&WHITE).unwrap();
-    let points = || series.iter().flat_map(|s| &s.points);
-    let most_x = points().map(|p| p.size).max().unwrap_or(1);
-    let least_x = points().map(|p| p.size).min().unwrap_or(1);
-    let most_y = points().map(|p| p.seconds).fold(0.0, f64::max);
-    let least_y = points().map(|p| p.seconds).fold(1.0, f64::min);
-    let mut chart = ChartBuilder::on(&area)
-        .margin(12)
-        .x_label_area_size(40)
-        .y_label_area_size(56)
-        .build_cartesian_2d(
-            (f64::from(least_x)..f64::from(most_x) * 1.05).log_scale(),
-            (least_y / 1.5..most_y * 1.5).log_scale(),
-        )
-        .unwrap();
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .x_desc(x_name)
-        .y_desc("seconds a frame")
-        .x_label_formatter(&|x| format!("{x}"))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .draw()
-        .unwrap();
     let colors = [RGBColor(20, 70, 200), RGBColor(200, 80, 20)];
-    for (index, one) in series.iter().enumerate() {
+    let line = |(index, one): (usize, &Series)| {
         let base = colors[index / 2 % 2];
-        let color = match one.sampling {
-            Sampling::Tiles => base.to_rgba(),
-            _ => base.mix(0.4),
-        };
-        let points = one.points.iter().map(|p| (f64::from(p.size), p.seconds));
-        let line = LineSeries::new(points, color.stroke_width(2)).point_size(3);
-        chart
-            .draw_series(line)
-            .unwrap()
-            .label(one.label())
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3)));
-    }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .background_style(WHITE.mix(0.8))
-        .border_style(BLACK.mix(0.3))
-        .draw()
-        .unwrap();
-    area.present().unwrap();
+        Line {
+            label: one.label(),
+            color: match one.sampling {
+                Sampling::Tiles => base.to_rgba(),
+                _ => base.mix(0.4),
+            },
+            points: (one.points.iter())
+                .map(|p| (f64::from(p.size), p.seconds))
+                .collect(),
+        }
+    };
+    let lines: Vec<Line> = series.iter().enumerate().map(line).collect();
+    plot::plot(path, x_name, "seconds a frame", &lines);
 }
 
 #[allow(unsafe_code)] // one call that must come before everything else

@@ -1,12 +1,10 @@
-//! `energywave bench --table crowd`: points of light in a ball, from a thousand to three million, by both profiles, and
-//! behind a hundred boxes.
+//! `energywave bench --table crowd`: points of light in a ball, from a thousand to three million, by both profiles,
+//! behind a hundred boxes, and each by itself.
 
-use energywave::glam::DVec3;
-use energywave::image::{DepthAlong, DepthImage, ImageSize};
-use energywave::papers::turned;
+use energywave::papers::{crowd, depths_of_boxes, turned};
 use energywave::reference::light_of_points_up_to;
-use energywave::scene::{Antialias, Camera, Decay, PointList, Points, Profile, Ray};
-use energywave::{Error, RadianceImage, Scene};
+use energywave::scene::{Crowd, Profile, Ray};
+use energywave::{RadianceImage, Scene};
 use serde::Serialize;
 
 use super::bench::{prepare, save, time};
@@ -21,6 +19,12 @@ const COUNTS: [u32; 5] = [1000, 10_000, 100_000, 1_000_000, 3_000_000];
 const BEHIND_BOXES: [u32; 2] = [100_000, 1_000_000];
 const BOXES: u32 = 100;
 
+/// How many are drawn each by itself, too.
+const APART: [u32; 2] = [1000, 10_000];
+
+/// From so many on the growth of the time is fitted.
+const FITTED_FROM: u32 = 10_000;
+
 /// So many pixels are compared with the float64 sum over all points.
 const COMPARED: usize = 2000;
 
@@ -34,6 +38,7 @@ struct CrowdCell {
     boxes: u32,
     width: u32,
     height: u32,
+    /// All together, `crowd`, or each by itself, `apart`.
     method: &'static str,
     fps: f64,
     kernel_ms: f64,
@@ -65,26 +70,37 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
     let (devices, mut renderer) = prepare(arguments)?;
     let origin = Origin::now(&devices);
     let mut cells: Vec<CrowdCell> = Vec::new();
-    let open = COUNTS.map(|count| (count, 0)).into_iter();
-    let kinds = open.chain(BEHIND_BOXES.map(|count| (count, BOXES)));
+    let open = COUNTS.map(|count| (count, 0, "crowd")).into_iter();
+    let behind = BEHIND_BOXES.map(|count| (count, BOXES, "crowd"));
+    let apart = APART.map(|count| (count, 0, "apart"));
+    let kinds = open.chain(behind).chain(apart);
     for (name, profile) in [
         ("inverse", Profile::Inverse),
         ("inverse-square", Profile::InverseSquare),
     ] {
-        for (points, boxes) in kinds.clone() {
-            let mut scene = scene(points, profile)?;
+        for (points, boxes, method) in kinds.clone() {
+            let mut scene = crowd(points, profile)?;
             if boxes > 0 {
                 scene.depth = Some(depths_of_boxes(&scene, boxes)?);
             }
+            if method == "apart" {
+                scene.integration.crowd = Crowd::Never;
+            }
             let speed = energywave::papers::measure(&mut renderer, &scene, time(arguments))?;
-            let kind = if boxes > 0 { "-boxes" } else { "" };
+            let kind = match (boxes, method) {
+                (0, "crowd") => "",
+                (0, _) => "-apart",
+                _ => "-boxes",
+            };
             let file = format!("crowd-{name}-{points}{kind}.exr");
             save(arguments, &file, &speed, &scene)?;
             let errors = errors(&turned(&scene, speed.frame), &speed.image);
             let spread: Spread = speed.times.into();
             let (mut exponent, mut times) = (None, None);
             if boxes == 0 {
-                let before = cells.last().filter(|cell| cell.profile == profile);
+                let before = cells
+                    .last()
+                    .filter(|it| (it.profile, it.method, it.boxes) == (profile, method, 0));
                 exponent = before.map(|it| {
                     let growth = (spread.median_ms / it.spread.median_ms).ln();
                     growth / (f64::from(points) / f64::from(it.points)).ln()
@@ -105,7 +121,7 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
                 boxes,
                 width: scene.image.width,
                 height: scene.image.height,
-                method: "crowd",
+                method,
                 fps: speed.fps,
                 kernel_ms: 1e3 * speed.kernel.as_secs_f64(),
                 sorting_ms,
@@ -129,75 +145,38 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
             }
             cells.push(cell);
         }
+        if arguments.data.is_text() {
+            let growth = growth(&cells, profile);
+            print(&format!(
+                "{name}: from {FITTED_FROM} points on time grows with the power {growth:.2} of their number\n"
+            ))?;
+        }
     }
     arguments.data.print(&cells)
 }
 
-/// Returns numbers that lie evenly in a cube from -1 to 1: multiples of powers of the root of x^4 = x + 1 (Roberts
-/// 2018).
-fn even(number: f64) -> DVec3 {
-    const ROOT: f64 = 1.220_744_084_605_759_5;
-    let share = |power: i32| 2.0 * (number * ROOT.powi(-power)).fract() - 1.0;
-    DVec3::new(share(1), share(2), share(3))
-}
-
-/// Makes points that lie evenly in a ball, seen from 4 away at 1920x1080.
-fn scene(count: u32, profile: Profile) -> Result<Scene, Error> {
-    let mut number = 0.0;
-    let mut place = || loop {
-        number += 1.0;
-        let place = even(number);
-        if place.length_squared() <= 1.0 {
-            return place;
-        }
+/// Returns with which power of their number the time of crowds grows, by least squares of the logarithms.
+fn growth(cells: &[CrowdCell], profile: Profile) -> f64 {
+    let is_fitted = |it: &&CrowdCell| {
+        let is_open_crowd = it.method == "crowd" && it.boxes == 0 && it.profile == profile;
+        is_open_crowd && it.points >= FITTED_FROM
     };
-    let positions: Vec<DVec3> = (0..count).map(|_| place()).collect();
-    let lights = (0..count).map(|k| {
-        let warm = (k % 97) as f32 / 97.0;
-        [1.0, 0.4 + 0.4 * warm, 0.2 + 0.7 * warm]
-    });
-    let mut points = Points::new(PointList::with_lights(positions, lights.collect())?);
-    points.profile = profile;
-    points.coefficient = 2.0 / f64::from(count);
-    let mut scene = Scene::new(Camera::new(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO));
-    scene.camera.ray_length = Some(12.0);
-    scene.image = ImageSize {
-        width: 1920,
-        height: 1080,
-    };
-    // Single rays, which have a truth.
-    scene.integration.antialias = Antialias::None;
-    scene.decay = Some(Decay::new(0.1, 0.1));
-    scene.points.push(points);
-    Ok(scene)
-}
-
-/// Returns how far from the eye rays meet boxes that lie evenly in and around the ball.
-fn depths_of_boxes(scene: &Scene, count: u32) -> Result<DepthImage, Error> {
-    let boxes: Vec<(DVec3, DVec3)> = (0..count)
-        .map(|number| {
-            let (middle, size) = (even(f64::from(number)), even(f64::from(number) + 0.5));
-            let half = 0.12 * size.abs() + 0.03;
-            (1.6 * middle - half, 1.6 * middle + half)
-        })
+    let logs: Vec<(f64, f64)> = cells
+        .iter()
+        .filter(is_fitted)
+        .map(|it| (f64::from(it.points).ln(), it.spread.median_ms.ln()))
         .collect();
-    let (plane, size) = (scene.view_plane(), scene.image);
-    let length = |index: usize| {
-        let ray = plane.ray(index as u32 % size.width, index as u32 / size.width);
-        let toward = (ray.origin - plane.eye).normalize();
-        let hit = |(low, high): &(DVec3, DVec3)| {
-            let (a, b) = ((*low - plane.eye) / toward, (*high - plane.eye) / toward);
-            let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
-            (enter <= leave && enter > 0.0).then_some(enter)
-        };
-        let lengths = boxes.iter().filter_map(hit);
-        lengths.fold(f64::INFINITY, f64::min) as f32
+    let count = logs.len() as f64;
+    let middle = logs.iter().fold((0.0, 0.0), |sum, (x, y)| {
+        (sum.0 + x / count, sum.1 + y / count)
+    });
+    let product = |other: fn(f64, f64) -> f64| -> f64 {
+        let terms = logs
+            .iter()
+            .map(|(x, y)| (x - middle.0) * other(x - middle.0, y - middle.1));
+        terms.sum()
     };
-    DepthImage::new(
-        size,
-        DepthAlong::Ray,
-        (0..size.pixels()).map(length).collect(),
-    )
+    product(|_, y| y) / product(|x, _| x)
 }
 
 /// Returns the sorted errors of pixels that are spread evenly over a picture.
@@ -229,7 +208,9 @@ fn errors(scene: &Scene, image: &RadianceImage) -> Vec<f64> {
 
 fn print_cell(cell: &CrowdCell, name: &str, is_first: bool) -> Outcome {
     if is_first {
-        print("   points profile        boxes  median ms  sort cells tiles pixels   evaluations")?;
+        print(
+            "   points profile        kind       median ms  sort cells tiles pixels   evaluations",
+        )?;
         print("  99.9 % within  exponent\n")?;
     }
     let growth = match (cell.exponent, cell.times) {
@@ -237,10 +218,13 @@ fn print_cell(cell: &CrowdCell, name: &str, is_first: bool) -> Outcome {
         (_, Some(times)) => format!("{times:.2} times"),
         _ => String::new(),
     };
+    let kind = match cell.boxes {
+        0 => cell.method.to_owned(),
+        boxes => format!("{boxes} boxes"),
+    };
     print(&format!(
-        "{:>9} {name:<14} {:>5} {:>10.1} {:>5.0} {:>5.0} {:>5.0} {:>6.0} {:>13} {:>14.1e} {growth:>9}\n",
+        "{:>9} {name:<14} {kind:<9} {:>10.1} {:>5.0} {:>5.0} {:>5.0} {:>6.0} {:>13} {:>14.1e} {growth:>9}\n",
         cell.points,
-        cell.boxes,
         cell.spread.median_ms,
         cell.sorting_ms,
         cell.cells_ms,

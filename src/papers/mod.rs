@@ -1,6 +1,7 @@
 //! The papers' speed tables (Watanabe, Abe, Konno 2015, Tables 2 and 3; Abe, Watanabe 2010), and the speed of any
 //! scene: whole frames, the image in host memory at the end of each, a new camera for every frame.
 
+mod crowd;
 #[cfg(feature = "files")]
 mod figures;
 mod occluders;
@@ -15,6 +16,7 @@ use std::time::{Duration, Instant};
 
 use glam::{DMat4, DQuat, DVec3};
 
+pub use crowd::{crowd, depths_of_boxes};
 #[cfg(feature = "files")]
 pub use figures::Figure;
 pub use occluders::tetrahedra;

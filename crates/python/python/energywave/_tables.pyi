@@ -625,6 +625,7 @@ class Points(Table):
     colors: Union[_Values, str]
     file: Union[str, "PathLike[str]"]
     positions: _Values
+    previous: _Values
     profile: Literal["inverse", "inverse-square", "inverse-cube", "gaussian", "smeared", "convolution"]
     radius: _Number
     reach: _Number
@@ -637,6 +638,7 @@ class Points(Table):
         colors: Optional[Union[_Values, str]] = None,
         file: Optional[Union[str, "PathLike[str]"]] = None,
         positions: Optional[_Values] = None,
+        previous: Optional[_Values] = None,
         profile: Optional[Literal["inverse", "inverse-square", "inverse-cube", "gaussian", "smeared", "convolution"]] = None,
         radius: Optional[_Number] = None,
         reach: Optional[_Number] = None,
