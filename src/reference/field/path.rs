@@ -253,8 +253,8 @@ fn value_and_slope(coefficients: &[f64], t: f64) -> (f64, f64) {
     })
 }
 
-/// Finds the root of a polynomial that changes its sign once in [from, to], where it is at most 0 first or last: Newton's
-/// steps, halving where they leave the bracket or shrink slowly.
+/// Finds the root of a polynomial that changes its sign once in [from, to]: Newton's steps, halving where they leave
+/// the bracket or shrink slowly.
 fn bracketed_root(coefficients: &[f64], rises: bool, mut from: f64, mut to: f64) -> f64 {
     let mut t = 0.5 * (from + to);
     let mut last = to - from;
