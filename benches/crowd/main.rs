@@ -166,11 +166,11 @@ fn text_of(table: &[Value], trees: &[Grown], lines: &[Line]) -> String {
     text += &common::header(&device, "cargo bench --bench crowd");
     let _ = writeln!(
         text,
-        "\n`energywave bench --table crowd --seconds 1`: 1920x1080, a ray a pixel, tolerance 1e-3, `[[points]]` that lie \
-         evenly in a ball seen from 4 away; times in milliseconds. Errors are relative to the float64 sum over all \
+        "\n`energywave bench --table crowd --seconds 1`: 1920x1080, a ray a pixel, tolerance 1e-3, `[[points]]` that \
+         lie evenly in a ball seen from 4 away; times in milliseconds. Errors are relative to the float64 sum over all \
          points, of the worst colour, of {} pixels.\n\n\
-         | points | profile | kind | median | least | sorting | cells | tiles | pixels | evaluations | median error | 99.9 % \
-         within | greatest error |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|",
+         | points | profile | kind | median | least | sorting | cells | tiles | pixels | evaluations \
+         | median error | 99.9 % within | greatest error |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|",
         table[0]["compared"]
     );
     for row in table {
@@ -199,8 +199,8 @@ fn text_of(table: &[Value], trees: &[Grown], lines: &[Line]) -> String {
     let _ = writeln!(
         text,
         "\nA plain tree code for the same pictures ([`benches/crowd/tree.rs`](../crowd/tree.rs)): an octree of which a \
-         ray takes nodes that are narrow beside their distance as one point (Barnes, Hut 1986), float64, one closed form \
-         after the other, on two threads. The widest opening that is within 1e-3; {} pixels were asked for, and their \
+         ray takes nodes that are narrow beside their distance as one point (Barnes, Hut 1986), float64, one closed \
+         form after the other, on two threads. The widest opening that is within 1e-3; {} pixels were asked for, and their \
          time is taken for all.\n\n\
          | points | profile | width / distance | 99.9 % within | evaluations | build, s | frame, s |\n\
          |---|---|---|---|---|---|---|",
