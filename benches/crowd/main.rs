@@ -200,8 +200,8 @@ fn text_of(table: &[Value], trees: &[Grown], lines: &[Line]) -> String {
         text,
         "\nA plain tree code for the same pictures ([`benches/crowd/tree.rs`](../crowd/tree.rs)): an octree of which a \
          ray takes nodes that are narrow beside their distance as one point (Barnes, Hut 1986), float64, one closed \
-         form after the other, on two threads. The widest opening that is within 1e-3; {} pixels were asked for, and their \
-         time is taken for all.\n\n\
+         form after the other, on two threads. The widest opening that is within 1e-3; {} pixels were asked for, and \
+         their time is taken for all.\n\n\
          | points | profile | width / distance | 99.9 % within | evaluations | build, s | frame, s |\n\
          |---|---|---|---|---|---|---|",
         ROWS * IN_A_ROW
