@@ -104,6 +104,15 @@ typedef struct {
 #define ROW_VECTORS(n) (((n) + 3u) / 4u)
 #define MOST_VECTORS ((MOST_NODES + 3u) / 4u)
 
+// With -D NO_SHUFFLES element by element: oclgrind 21.10 ends on others.
+INLINE float16 side_by_side(const float4 a, const float4 b, const float4 c, const float4 d) {
+#ifdef NO_SHUFFLES
+    return (float16)(a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w, d.x, d.y, d.z, d.w);
+#else
+    return (float16)(a, b, c, d);
+#endif
+}
+
 // Writes what a source lays on a row of a cell's nodes, and the weights of the rows.
 INLINE void weigh(const Laying *const laying, const uint index, const uint n, const float4 light, float16 *const in_row,
                   float *const down) {
@@ -124,8 +133,8 @@ INLINE void weigh(const Laying *const laying, const uint index, const uint n, co
     weights_at(laying->numbers, CELL_NODES, n, right, across);
     weights_at(laying->numbers, CELL_NODES, n, below, down);
     for (uint k = 0u; k < ROW_VECTORS(n); ++k)
-        in_row[k] = (float16)(across[4u * k] * light, across[4u * k + 1u] * light, across[4u * k + 2u] * light,
-                              across[4u * k + 3u] * light);
+        in_row[k] = side_by_side(across[4u * k] * light, across[4u * k + 1u] * light, across[4u * k + 2u] * light,
+                                 across[4u * k + 3u] * light);
 }
 
 // Lays the peaks of a cell's sources on its nodes; n is a constant where it can be.

@@ -355,8 +355,8 @@ fn crowds_shine_within_the_memory_that_there_is() {
             // In a heap, along a line that leaves the view on both sides, and beside the eye.
             let mut scene = common::empty_scene(45, 29);
             scene.integration.method = Method::default();
-            let place = |k: u32| match k % 5 {
-                0 => DVec3::new(0.02 * f64::from(k) - 6.0, 0.2, 0.1),
+            let place = |k: u32| match k % 25 {
+                0 | 5 | 10 | 15 | 20 => DVec3::new(0.02 * f64::from(k) - 6.0, 0.2, 0.1),
                 1 => scene.camera.eye + DVec3::new(0.01 * f64::from(k), -1.0, 0.0),
                 _ => 1e-3 * f64::from(k) * DVec3::new(f64::from(k % 3), f64::from(k % 7), -1.0),
             };
