@@ -37,10 +37,10 @@ typedef struct {
 
 // What all cells have.
 typedef struct {
-    __global const uint *starts, *codes;
+    __global const uint *starts, *places;
     __global const CrowdSource *sources;
     __global const float4 *peaks, *levels, *nodes, *limits;
-    __global const float *numbers;
+    __global const float *numbers, *planes;
 } Cells;
 
 bool is_empty_cell(const Cells *const cells, const uint level, const uint code) {
@@ -56,8 +56,9 @@ INLINE void add_light(float3v *const light, const floatv core, const float4 sour
 // Adds the light of a point along a batch of rays, up to each of some ends.
 INLINE void add_point(const CrowdView *const view, const Rays *const rays, const Passing passing, const float4 source,
                       const uint batch, const Ends ends, NodesOfTile *const tile) {
+    const Approach approach = approach_of(view, rays->begin - passing.along, passing.least);
     for (uint end = ends.first; end < ends.end; ++end) {
-        const floatv light = light_beside(view, &tile->ends[end], rays->begin - passing.along, passing.least);
+        const floatv light = light_to(view, &approach, &tile->ends[end]);
         add_light(&tile->light[end * BATCHES + batch], light, source);
     }
 }
@@ -68,10 +69,10 @@ INLINE void add_sources(const CrowdView *const view, const Cells *const cells, c
     const float soft4 = angle * angle * angle * angle;
     for (uint index = first; index < end; ++index) {
         __global const CrowdSource *const source = cells->sources + index;
-        const uint code = cells->codes[index];
-        const float u = slope_u(view, (float)(8u * every_other(code) + 4u) + source->x);
-        const float v = slope_v(view, (float)(8u * every_other(code >> 1) + 4u) + source->y);
-        const float z = exp(source->t), far2 = z * z * fma(u, u, fma(v, v, 1.0f));
+        const uint cell = cells->places[index];
+        const float u = slope_u(view, middle_x_of(cell) + source->x);
+        const float v = slope_v(view, middle_y_of(cell) + source->y);
+        const float z = source->z, far2 = z * z * fma(u, u, fma(v, v, 1.0f));
         const float4 light = (float4)(source->red, source->green, source->blue, 0.0f);
         for (uint batch = 0u; batch < BATCHES; ++batch) {
             const Rays *const rays = &tile->rays[batch];
@@ -81,9 +82,9 @@ INLINE void add_sources(const CrowdView *const view, const Cells *const cells, c
     }
 }
 
-// Where the nodes of a cell are: the first of them, the middle of the cell, and its half side in pixels.
+// Where the nodes of a cell are: which of those with depths it is, the middle of the cell, and its half side in pixels.
 typedef struct {
-    uint from;
+    uint deep;
     float half_side, u, v;
 } Place;
 
@@ -110,9 +111,9 @@ INLINE void add_limits(const CrowdView *const view, const Cells *const cells, co
     if (end - first <= n * n)
         for (uint index = first; index < end; ++index) {
             __global const CrowdSource *const source = cells->sources + index;
-            const uint code = cells->codes[index];
-            const float u = slope_u(view, (float)(8u * every_other(code) + 4u) + source->x);
-            const float v = slope_v(view, (float)(8u * every_other(code >> 1) + 4u) + source->y);
+            const uint cell = cells->places[index];
+            const float u = slope_u(view, middle_x_of(cell) + source->x);
+            const float v = slope_v(view, middle_y_of(cell) + source->y);
             const float4 peak = source->peak * (float4)(source->red, source->green, source->blue, 0.0f);
             add_limit(view, u, v, peak, soft4, tile);
         }
@@ -131,13 +132,16 @@ INLINE void add_limits(const CrowdView *const view, const Cells *const cells, co
 INLINE void add_nodes(const CrowdView *const view, const Cells *const cells, const Place place, const float angle,
                       const bool is_whole, const Ends ends, NodesOfTile *const tile) {
     const uint n = view->nodes, depths = is_whole ? view->whole_depths : view->depths;
+    __global const float4 *const nodes = cells->nodes + n * n * view->depths * place.deep;
+    __global const float *const planes =
+        cells->planes + planes_of_cell(view) * place.deep + (is_whole ? 2u + view->depths : 2u);
     const float soft4 = angle * angle * angle * angle;
     for (uint j = 0u; j < n; ++j) {
         const float v = fma(place.half_side * view->step_v, cells->numbers[CELL_NODES + j], place.v);
         for (uint i = 0u; i < n; ++i) {
             const float u = fma(place.half_side * view->step_u, cells->numbers[CELL_NODES + i], place.u);
             const float length2 = fma(u, u, fma(v, v, 1.0f));
-            __global const float4 *const column = cells->nodes + place.from + j * n + i;
+            __global const float4 *const column = nodes + j * n + i;
 #ifdef WITH_ENDS
             // Whole rays need fewer depths: light at others is laid on those.
             float4 laid[MOST_DEPTHS];
@@ -157,9 +161,9 @@ INLINE void add_nodes(const CrowdView *const view, const Cells *const cells, con
                     const float4 light = column[q * n * n];
 #endif
 #ifdef ONE_DEPTH
-                    const float z = cells->numbers[DEPTHS_THEMSELVES]; // spoiled
+                    const float z = planes[0]; // spoiled
 #else
-                    const float z = cells->numbers[(is_whole ? WHOLE_DEPTHS : DEPTHS_THEMSELVES) + q];
+                    const float z = planes[q];
 #endif
 #ifdef LIMITS_ALWAYS // spoiled
                     floatv peak, level;
@@ -188,7 +192,7 @@ INLINE void add_cell(const CrowdView *const view, const Cells *const cells, cons
     place.half_side = (float)(4u << level);
     place.u = slope_u(view, (2.0f * (float)every_other(code) + 1.0f) * place.half_side);
     place.v = slope_v(view, (2.0f * (float)every_other(code >> 1) + 1.0f) * place.half_side);
-    place.from = (at - cells_below(view, view->base)) * n * n * view->depths;
+    place.deep = at - cells_below(view, view->base);
     const uint first = cells->starts[code << (2u * level)], end = cells->starts[(code + 1u) << (2u * level)];
     const Ends cut = OPEN_CUT(tile), whole = OPEN_WHOLE(tile);
     if (cut.end > 0u) {

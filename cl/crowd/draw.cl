@@ -106,7 +106,7 @@ INLINE void add_near(const CrowdView *const view, __global const CrowdSource *co
 INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *const source, const float x,
                       const float y, const float column, const float row, const Taking *const taking,
                       const End *const ends, float3v *const light) {
-    const float u = slope_u(view, column + x), v = slope_v(view, row + y), z = exp(source->t);
+    const float u = slope_u(view, column + x), v = slope_v(view, row + y), z = source->z;
     const float stretch2 = fma(u, u, fma(v, v, 1.0f)), per2 = 1.0f / stretch2;
     const float width = view->step_u * sqrt(fma(v, v, 1.0f) * per2),
                 height = view->step_v * sqrt(fma(u, u, 1.0f) * per2);
@@ -122,7 +122,8 @@ INLINE void add_whole(const CrowdView *const view, __global const CrowdSource *c
         const floatv q = beside2 * per2, rounded = max(q, round2);
         const Passing it = passing(&rays, u, v, z, rounded * stretch2, 0.0f);
         const End *const end = &ends[vector % END_VECTORS];
-        floatv here = light_beside(view, end, rays.begin - it.along, it.least);
+        const Approach approach = approach_of(view, rays.begin - it.along, it.least);
+        floatv here = light_to(view, &approach, end);
 #ifdef WITH_ENDS
         here = select(splat(0.0f), here, taking->lanes[vector]);
 #endif

@@ -64,7 +64,7 @@ uint ends_of_tile(const CrowdView *const view, __global const float *const range
 #ifdef ONE_END
         counts |= 1u << (2u * slab); // spoiled
 #else
-        counts |= (span < 0.02f ? 1u : span < 0.3f ? 2u : 3u) << (2u * slab);
+        counts |= (span < 0.004f ? 1u : span < 0.3f ? 2u : 3u) << (2u * slab);
 #endif
     }
     uint at = 0u;
@@ -91,11 +91,13 @@ __kernel void find_ends(const CrowdView view, __global const float *const restri
     if (number >= view.tile_columns * rows)
         return;
     const uint left = 8u * (number % view.tile_columns), top = 8u * (number / view.tile_columns);
-    float low[SLABS], high[SLABS], whole = 0.0f;
+    floatv low[SLABS], high[SLABS];
     for (uint slab = 0u; slab < SLABS; ++slab)
-        low[slab] = 2.0f, high[slab] = -1.0f;
+        low[slab] = splat(2.0f), high[slab] = splat(-1.0f);
+    bool has_whole = false;
     for (uint vector = 0u; vector < 64u / LANES; ++vector) {
         const uintv place = vector * LANES + LANE_NUMBERS;
+        // Beyond the image, its last pixels again.
         const uintv x = min(left + (place & 7u), (uintv)(view.width - 1u));
         const uintv y = min(top + (place >> 3), (uintv)(view.height - 1u));
         const floatv u = fma(to_floatv(x + view.left) + 0.5f, splat(view.step_u), splat(view.first_u));
@@ -104,26 +106,33 @@ __kernel void find_ends(const CrowdView view, __global const float *const restri
         const floatv depth = gather(depths, as_intv(y * view.width + x));
         const floatv length = view.is_along_axis ? depth * rays.stretch : depth;
         const floatv share = min(max((length - rays.begin) / view.ray_length, splat(0.0f)), splat(1.0f));
-        float share_of[LANES], slab_at[LANES];
-        scatter(share, share_of), scatter(slab_of(&view, share), slab_at);
+        float share_of[LANES];
+        scatter(share, share_of);
         for (uint lane = 0u; lane < LANES; ++lane) {
-            const uint at = vector * LANES + lane, slab = (uint)slab_at[lane];
-            const uint column = left + (at & 7u), row = top + (at >> 3);
-            if (column >= view.width || row >= view.height)
-                continue;
-            shares[row * view.width + column] = share_of[lane];
-            if (slab == SLABS) {
-                whole = 1.0f;
-                continue;
-            }
-            low[slab] = min(low[slab], share_of[lane]);
-            high[slab] = max(high[slab], share_of[lane]);
+            const uint at = vector * LANES + lane, column = left + (at & 7u), row = top + (at >> 3);
+            if (column < view.width && row < view.height)
+                shares[row * view.width + column] = share_of[lane];
+        }
+        const intv is_cut = share < 1.0f;
+        has_whole |= any_lane(!is_cut);
+        if (!any_lane(is_cut))
+            continue;
+        const floatv own = slab_of(&view, share);
+        for (uint slab = 0u; slab < SLABS; ++slab) {
+            const intv is_in = own == (float)slab;
+            low[slab] = min(low[slab], select(splat(2.0f), share, is_in));
+            high[slab] = max(high[slab], select(splat(-1.0f), share, is_in));
         }
     }
     __global float *const range = ranges + ROW_OF_RANGES * number;
-    for (uint slab = 0u; slab < SLABS; ++slab)
-        range[2u * slab] = low[slab], range[2u * slab + 1u] = high[slab];
-    range[2u * SLABS] = whole;
+    for (uint slab = 0u; slab < SLABS; ++slab) {
+        float lows[LANES], highs[LANES];
+        scatter(low[slab], lows), scatter(high[slab], highs);
+        for (uint lane = 1u; lane < LANES; ++lane)
+            lows[0] = min(lows[0], lows[lane]), highs[0] = max(highs[0], highs[lane]);
+        range[2u * slab] = lows[0], range[2u * slab + 1u] = highs[0];
+    }
+    range[2u * SLABS] = has_whole ? 1.0f : 0.0f;
 }
 #else
 #define MOST_ENDS 1u

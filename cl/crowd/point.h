@@ -69,52 +69,58 @@ INLINE floatv near_artanh(const floatv m2) {
     return fma(series, m2, splat(1.0f / 3.0f));
 }
 
-// What a ray comes to in v.
+// How a ray comes to a point: the way from the foot of the perpendicular to where it begins, the squared distance of
+// its line, the distance where it begins; after the change of variable, the factor of the square, and how far the point
+// is beside the line. All ends of a ray share it.
 typedef struct {
-    floatv f0, f1, f0f1, g, a;
-} RayEnds;
+    floatv begin, least, f0, per_f0;
+    floatv a, per_root_a;
+    floatv beside, per_beside;
+} Approach;
 
-INLINE RayEnds ray_ends(const CrowdView *const view, const End *const at, const floatv begin, const floatv least) {
-    const floatv n1 = at->nearness;
-    const floatv end = begin + at->length, pole = begin - view->pole;
-    RayEnds ends;
-    ends.f0 = root(fma(begin, begin, least));
-    ends.f1 = n1 * root(fma(end, end, least));
-    ends.f0f1 = ends.f0 * ends.f1;
-    ends.g = n1 * fma(begin, end, least);
-    ends.a = view->pole > 0.0f ? fma(pole, pole, least) : splat(view->ray_length * view->ray_length);
-    return ends;
+INLINE Approach approach_of(const CrowdView *const view, const floatv begin, const floatv beside2) {
+    Approach it;
+    it.begin = begin, it.least = max(beside2, view->floor2);
+    it.f0 = root(fma(begin, begin, it.least));
+    it.per_f0 = inverse(max(it.f0, 1e-18f));
+    const floatv from_pole = begin - view->pole;
+    it.a = view->pole > 0.0f ? fma(from_pole, from_pole, it.least) : splat(view->ray_length * view->ray_length);
+    it.per_root_a = 0.5f * twice_inverse_sqrt_(max(it.a, SMALL));
+    it.beside = root(it.least) * (view->pole > 0.0f ? view->pole : view->ray_length);
+    it.per_beside = inverse(max(it.beside, SMALL));
+    return it;
 }
 
-INLINE floatv inverse_light(const CrowdView *const view, const End *const at, const floatv begin, const floatv least) {
-    const RayEnds ends = ray_ends(view, at, begin, least);
-    const floatv n1 = at->nearness, turn = n1 * at->length;
-    const floatv sum = ends.f0 + ends.f1, per_sum = inverse(max(sum, SMALL));
+INLINE floatv inverse_light(const Approach *const it, const End *const at) {
+    const floatv n1 = at->nearness, turn = n1 * at->length, end = it->begin + at->length;
+    const floatv f1 = n1 * root(fma(end, end, it->least)), f0f1 = it->f0 * f1;
+    const floatv g = n1 * fma(it->begin, end, it->least);
+    const floatv sum = it->f0 + f1, per_sum = inverse(max(sum, SMALL));
     const floatv ratio = at->advance * per_sum;
-    const floatv m2 = ends.a * ratio * ratio;
-    const intv is_between = ends.g < 0.0f;
-    const floatv per_root = 0.5f * twice_inverse_sqrt_(max(ends.a, SMALL));
-    const floatv whole = fma(ends.a * per_root, at->advance, sum);
-    const floatv above = whole * whole * select(splat(1.0f), ends.f0f1 - ends.g, is_between);
-    const floatv below = 2.0f * select(ends.f0f1 + ends.g, least * (turn * turn), is_between);
+    const floatv m2 = it->a * ratio * ratio;
+    const intv is_between = g < 0.0f;
+    const floatv whole = fma(it->a * it->per_root_a, at->advance, sum);
+    const floatv above = whole * whole * select(splat(1.0f), f0f1 - g, is_between);
+    const floatv below = 2.0f * select(f0f1 + g, it->least * (turn * turn), is_between);
     const floatv artanh = 0.5f * LN_2 * binary_logarithm(above * inverse(max(below, 1e-36f)));
-    const floatv per_m = per_root * inverse(max(ratio, SMALL));
+    const floatv per_m = it->per_root_a * inverse(max(ratio, SMALL));
     floatv excess = fma(artanh, per_m, splat(-1.0f)) * per_m * per_m;
     const intv is_small = m2 < 0.1f;
     if (any_lane(is_small))
         excess = select(excess, near_artanh(m2), is_small);
     const floatv mean = 0.5f * (1.0f + n1);
-    const floatv bent = fma(m2, mean, -0.5f * (n1 - 1.0f) * (ends.f1 - ends.f0) * per_sum);
+    const floatv bent = fma(m2, mean, -0.5f * (n1 - 1.0f) * (f1 - it->f0) * per_sum);
     return 2.0f * ratio * fma(bent, excess, mean);
 }
 
-INLINE floatv square_light(const CrowdView *const view, const End *const at, const floatv begin, const floatv least) {
-    const RayEnds ends = ray_ends(view, at, begin, least);
-    const floatv n1 = at->nearness, turn = n1 * at->length, d = at->advance, per_d = at->per_advance;
-    const floatv rise = (ends.f1 - ends.f0) * (ends.f1 + ends.f0);
-    const floatv bulge = 0.25f * d * d * ends.a;
-    const floatv middle2 = fma(splat(0.5f), fma(ends.f0, ends.f0, ends.f1 * ends.f1), -bulge);
-    const floatv slope_n = n1 - 1.0f, mean_n = 0.5f * (1.0f + n1);
+INLINE floatv square_light(const CrowdView *const view, const Approach *const it, const End *const at) {
+    const floatv n1 = at->nearness, d = at->advance, end = it->begin + at->length;
+    const floatv f1 = n1 * root(fma(end, end, it->least)), f0f1 = it->f0 * f1;
+    const floatv g = n1 * fma(it->begin, end, it->least);
+    const floatv rise = (f1 - it->f0) * (f1 + it->f0);
+    const floatv bulge = 0.25f * d * d * it->a;
+    const floatv middle2 = fma(splat(0.5f), fma(it->f0, it->f0, f1 * f1), -bulge);
+    const floatv mean_n = 0.5f * (1.0f + n1);
     const intv is_short = bulge <= 0.1f * middle2;
     floatv light = splat(0.0f);
     if (any_lane(is_short)) {
@@ -122,33 +128,30 @@ INLINE floatv square_light(const CrowdView *const view, const End *const at, con
         for (int k = 0; k < 4; ++k) {
             const float x = k < 2 ? node[k & 1] : -node[k & 1];
             const floatv f2 = fma(fma(bulge, splat(x), 0.5f * rise), splat(x), middle2);
-            const floatv n = fma(0.5f * slope_n, splat(x), mean_n);
+            const floatv n = fma(0.5f * (n1 - 1.0f), splat(x), mean_n);
             light = fma(inverse(f2), 0.5f * weight[k & 1] * d * n * n, light);
         }
     }
     if (!any_lane(!is_short))
         return light;
-    const floatv per_a = inverse(max(ends.a, SMALL));
-    const floatv root_least = root(least) * turn * per_d;
-    const floatv per_root = inverse(max(root_least, SMALL));
-    const floatv per_sum = inverse(max(ends.f0f1 + fabs(ends.g), 1e-36f));
-    const floatv t = min(root_least * d * per_sum, 1.0f);
+    const floatv per_sum = inverse(max(f0f1 + fabs(g), 1e-36f));
+    const floatv t = min(it->beside * d * per_sum, 1.0f);
     const floatv beyond = 2.0f * d * per_sum * arctangent_ratio(t * t);
-    const floatv angle = select(beyond, fma(splat(M_PI_F), per_root, -beyond), ends.g < 0.0f);
-    const floatv growth = LN_2 * binary_logarithm(ends.f1 * inverse(max(ends.f0, 1e-18f)));
-    const floatv peak_n = fma(slope_n, -0.5f * rise * per_a * per_d * per_d, mean_n);
-    const floatv curvature = slope_n * slope_n * per_d * per_d * per_a;
-    const floatv slope = 2.0f * slope_n * per_d * per_a * peak_n;
-    const floatv at_peak = fma(-curvature * per_a, root_least * root_least, peak_n * peak_n);
-    const floatv whole = fma(at_peak, angle, fma(slope, growth, curvature * d));
+    const floatv angle = select(beyond, fma(splat(M_PI_F), it->per_beside, -beyond), g < 0.0f);
+    floatv whole = angle;
+    if (view->pole > 0.0f) { // nearness falls by as much as v grows
+        const floatv per_a = it->per_root_a * it->per_root_a, bend = per_a * it->beside;
+        const floatv growth = LN_2 * binary_logarithm(f1 * it->per_f0);
+        const floatv peak_n = fma(0.5f * rise, per_a * at->per_advance, mean_n);
+        const floatv at_peak = fma(-bend, bend, peak_n * peak_n);
+        whole = fma(at_peak, angle, per_a * fma(-2.0f * peak_n, growth, d));
+    }
     return select(whole, light, is_short);
 }
 
-// Returns the light along rays of a point so far beside their lines, squared, and so far along them.
-INLINE floatv light_beside(const CrowdView *const view, const End *const end, const floatv begin, const floatv least) {
-    const floatv beside = max(least, view->floor2);
-    return view->scale *
-           (view->is_square ? square_light(view, end, begin, beside) : inverse_light(view, end, begin, beside));
+// Returns the light along rays that come to a point so, up to an end.
+INLINE floatv light_to(const CrowdView *const view, const Approach *const approach, const End *const end) {
+    return view->scale * (view->is_square ? square_light(view, approach, end) : inverse_light(approach, end));
 }
 
 // Returns the square of (u, v, 1) x (u', v', 1), of which a and b are u - u' and v - v'.

@@ -113,7 +113,7 @@ INLINE bool is_enough(const CrowdView *const view, const Cells *const cells, con
     float4 least = (float4)(INFINITY);
     for (uint end = some.first; end < some.end; ++end) {
         const float z = fma(view->ray_length, ends[end], view->near_plane);
-        if (z * fma(4.0f, angle, 1.0f) >= exp(nearest))
+        if (z * fma(4.0f, angle, 1.0f) >= nearest)
             least = fmin(least, view->tolerance * least_light(tile, end));
     }
 #else
@@ -128,15 +128,16 @@ INLINE bool is_enough(const CrowdView *const view, const Cells *const cells, con
 
 __kernel void light_tiles(const CrowdView view, const uint level, const uint first_slot, const uint next_slot,
                           __global const uint *const restrict roots, __global const uint *const restrict starts,
-                          __global const uint *const restrict codes, __global const CrowdSource *const restrict sources,
+                          __global const uint *const restrict places,
+                          __global const CrowdSource *const restrict sources,
                           __global const float4 *const restrict peaks, __global const float4 *const restrict levels,
                           __global const float4 *const restrict nodes, __global const float4 *const restrict limits,
                           __global const float *const restrict rest, __global const float *const restrict numbers,
-                          __global CrowdTile *const restrict tiles, __global float *const restrict values,
-                          __global uint *const restrict owners, __global uint *const restrict is_wanted,
-                          __global uint *const restrict counts, __global const float *const restrict ranges,
-                          __global float *const restrict ends_of_tiles) {
-    const Cells cells = {starts, codes, sources, peaks, levels, nodes, limits, numbers};
+                          __global const float *const restrict planes, __global CrowdTile *const restrict tiles,
+                          __global float *const restrict values, __global uint *const restrict owners,
+                          __global uint *const restrict is_wanted, __global uint *const restrict counts,
+                          __global const float *const restrict ranges, __global float *const restrict ends_of_tiles) {
+    const Cells cells = {starts, places, sources, peaks, levels, nodes, limits, numbers, planes};
     const uint count = level == view.top ? view.roots : counts[level];
     const uint across = cells_across(&view, level);
     const float half_side = (float)(4u << level);

@@ -17,16 +17,15 @@ typedef struct {
     float step_u, step_v; // from a pixel to the next
     float near_plane;
     float ray_length;
-    float nearness;         // beta / (1 + beta): what decay leaves of the light at the end of a ray; 1 without
-    float advance;          // of v along a ray, see cl/wave/quadrature/decay.h
-    float pole;             // beta times the length of rays
-    float scale;            // of all light
-    float tolerance;        // of a pixel
-    float middle_t, half_t; // of ln z of the sources in the grid
-    float floor2;           // no squared distance is taken below it
-    uint is_square;         // the light of a source falls off with the square of the distance
-    uint nodes, depths;     // of a cell: nodes^2 depths
-    uint top, base;         // the highest level, and the lowest with depths
+    float nearness;     // beta / (1 + beta): what decay leaves of the light at the end of a ray; 1 without
+    float advance;      // of v along a ray, see cl/wave/quadrature/decay.h
+    float pole;         // beta times the length of rays
+    float scale;        // of all light
+    float tolerance;    // of a pixel
+    float floor2;       // no squared distance is taken below it
+    uint is_square;     // the light of a source falls off with the square of the distance
+    uint nodes, depths; // of a cell: nodes^2 depths
+    uint top, base;     // the highest level, and the lowest with depths
     uint width, height;
     uint left, above;   // where the image lies in the grid, pixels
     uint sources, rest; // in the grid, and beside it
@@ -44,11 +43,11 @@ typedef struct {
 } CrowdView;
 CHECK_SIZE(CrowdView, SIZEOF_CROWDVIEW);
 
-// A source in the grid: its place from the middle of its cell of 8 pixels, ln z, and light; along a ray that passes it
+// A source in the grid: its place from the middle of its cell of 8 pixels, z, and light; along a ray that passes it
 // at a small angle it gives `peak` times core_of(angle), plus `level`; once cells are summed, `level` is the least
 // square of a sine.
 typedef struct {
-    float x, y, t;
+    float x, y, z;
     float red, green, blue;
     float peak, level;
 } CrowdSource;
@@ -69,9 +68,8 @@ CHECK_SIZE(CrowdTile, SIZEOF_CROWDTILE);
 #define CELL_NODES 8u
 #define DEPTH_NODES 16u
 #define FACTORS 32u
-#define DEPTHS_THEMSELVES 96u
-#define WHOLE_DEPTHS 112u
-#define DEPTH_WEIGHTS 128u  // [one for whole rays][MOST_DEPTHS]
+#define WHOLE_NODES 96u
+#define DEPTH_WEIGHTS 112u  // [one for whole rays][MOST_DEPTHS]
 #define QUARTER_WEIGHTS 64u // [side of the parent][node of the tile][node of the parent]
 
 // Counts: of the tiles of each level, and of what they looked at.
@@ -79,6 +77,15 @@ CHECK_SIZE(CrowdTile, SIZEOF_CROWDTILE);
 #define COUNTED_LIMITS 17u
 #define COUNTED_PAIRS 18u
 #define COUNTED_END 20u
+
+// Returns where the middle of the cell of a source is, from what says which column and row of cells it is in.
+float middle_x_of(const uint cell) {
+    return (float)(8u * (cell & 0xffffu) + 4u);
+}
+
+float middle_y_of(const uint cell) {
+    return (float)(8u * (cell >> 16) + 4u);
+}
 
 // Returns the columns of a cell, or rows, in a Morton code shifted by one.
 uint every_other(uint code) {
@@ -104,6 +111,12 @@ uint code_of(const uint column, const uint row) {
 uint cells_below(const CrowdView *const view, const uint level) {
     const uint all = view->across * view->across << (2u * view->top);
     return level == 0u ? 0u : (4u * all - (4u * all >> (2u * level))) / 3u;
+}
+
+// Returns how many numbers say where the depths of a cell are: the middle and the half of the range of ln z, z at the
+// depths for cut rays, and at those for whole ones.
+uint planes_of_cell(const CrowdView *const view) {
+    return 2u + view->depths + view->whole_depths;
 }
 
 // Returns cells of a level in a row.

@@ -22,6 +22,7 @@ pub(super) struct Buffers {
     pub peaks: Kept<[f32; 4]>,
     pub levels: Kept<[f32; 4]>,
     pub nodes: Kept<[f32; 4]>,
+    pub planes: Kept<f32>,
     pub limits: Kept<[f32; 4]>,
     pub numbers: Kept<f32>,
     pub roots: Kept<u32>,
@@ -76,6 +77,7 @@ impl Buffers {
             peaks: Kept::new("the light of cells"),
             levels: Kept::new("the light around cells"),
             nodes: Kept::new("the nodes of cells"),
+            planes: Kept::new("the depths of the nodes"),
             limits: Kept::new("the nodes of small cells"),
             numbers: Kept::new("the weights of nodes"),
             roots: Kept::new("the first tiles"),
@@ -101,6 +103,7 @@ impl Buffers {
         self.peaks.reserve(compute, cells)?;
         self.levels.reserve(compute, cells)?;
         self.nodes.reserve(compute, deep * view.nodes_of_cell())?;
+        self.planes.reserve(compute, deep * view.planes_of_cell())?;
         let shallow = view.cells_below(view.shallow) * (view.nodes * view.nodes) as usize;
         self.limits.reserve(compute, shallow)?;
         self.tiles.reserve(compute, tiles)?;

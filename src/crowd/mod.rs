@@ -338,6 +338,7 @@ impl Enqueue<'_> {
         let codes = ("cells", buffers.cells.argument());
         let numbers = ("numbers", buffers.numbers.argument());
         let nodes = ("nodes", buffers.nodes.argument());
+        let planes = ("planes", buffers.planes.argument());
         let counts = ("counts", buffers.counts.argument());
         let is_wanted = ("is_wanted", buffers.is_wanted.argument());
         let all = view.cells_below(view.top + 1);
@@ -367,11 +368,17 @@ impl Enqueue<'_> {
         let base = ("level", &view.base as &dyn Argument);
         let [is_flat, is_deep] = [&0_u32, &1_u32].map(|it| ("has_depths", it as &dyn Argument));
         let laid = [
-            base, is_deep, starts, codes, sources, numbers, is_wanted, nodes,
+            base, is_deep, starts, codes, sources, numbers, is_wanted, nodes, planes,
         ];
         self.launch(Stage::Cells, &kernels.lay_sources, &laid, cells(view.base))?;
         for level in view.base + 1..=view.top {
-            let laid = [("level", &level as &dyn Argument), starts, numbers, nodes];
+            let laid = [
+                ("level", &level as &dyn Argument),
+                starts,
+                numbers,
+                nodes,
+                planes,
+            ];
             self.launch(Stage::Cells, &kernels.lay_quarters, &laid, cells(level))?;
         }
         let mut first = 0_u32;
@@ -381,7 +388,7 @@ impl Enqueue<'_> {
             if level < view.shallow {
                 let nodes = ("nodes", buffers.limits.argument());
                 let laid = [
-                    argument, is_flat, starts, codes, sources, numbers, is_wanted, nodes,
+                    argument, is_flat, starts, codes, sources, numbers, is_wanted, nodes, planes,
                 ];
                 self.launch(Stage::Cells, &kernels.lay_sources, &laid, cells(level))?;
             }
@@ -393,7 +400,7 @@ impl Enqueue<'_> {
                 ("next_slot", &next),
                 ("roots", buffers.roots.argument()),
                 starts,
-                ("codes", buffers.cells.argument()),
+                ("places", buffers.cells.argument()),
                 sources,
                 peaks,
                 levels,
@@ -401,6 +408,7 @@ impl Enqueue<'_> {
                 limits,
                 ("rest", buffers.rest.argument()),
                 numbers,
+                planes,
                 ("tiles", buffers.tiles.argument()),
                 ("values", buffers.values.argument()),
                 ("owners", buffers.owners.argument()),

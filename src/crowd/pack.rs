@@ -7,7 +7,7 @@ use crate::scene::{CORE_FLOOR, CrowdSight, Profile, Scene};
 
 device_struct! {
     /// The grid, what light becomes along its rays, and what is allowed.
-    CrowdView [144] {
+    CrowdView [136] {
         first_u: f32 = 0,
         first_v: f32 = 4,
         step_u: f32 = 8,
@@ -19,31 +19,29 @@ device_struct! {
         pole: f32 = 32,
         scale: f32 = 36,
         tolerance: f32 = 40,
-        middle_t: f32 = 44,
-        half_t: f32 = 48,
-        floor2: f32 = 52,
-        is_square: u32 = 56,
-        nodes: u32 = 60,
-        depths: u32 = 64,
-        top: u32 = 68,
-        base: u32 = 72,
-        width: u32 = 76,
-        height: u32 = 80,
-        left: u32 = 84,
-        above: u32 = 88,
-        sources: u32 = 92,
-        rest: u32 = 96,
-        roots: u32 = 100,
-        tile_columns: u32 = 104,
-        has_near_form: u32 = 108,
-        thickness: f32 = 112,
-        across: u32 = 116,
-        block: u32 = 120,
-        shallow: u32 = 124,
-        is_along_axis: u32 = 128,
-        slab_begin: f32 = 132,
-        per_slab: f32 = 136,
-        whole_depths: u32 = 140,
+        floor2: f32 = 44,
+        is_square: u32 = 48,
+        nodes: u32 = 52,
+        depths: u32 = 56,
+        top: u32 = 60,
+        base: u32 = 64,
+        width: u32 = 68,
+        height: u32 = 72,
+        left: u32 = 76,
+        above: u32 = 80,
+        sources: u32 = 84,
+        rest: u32 = 88,
+        roots: u32 = 92,
+        tile_columns: u32 = 96,
+        has_near_form: u32 = 100,
+        thickness: f32 = 104,
+        across: u32 = 108,
+        block: u32 = 112,
+        shallow: u32 = 116,
+        is_along_axis: u32 = 120,
+        slab_begin: f32 = 124,
+        per_slab: f32 = 128,
+        whole_depths: u32 = 132,
     }
 }
 
@@ -52,7 +50,7 @@ device_struct! {
     CrowdSource [32] {
         x: f32 = 0,
         y: f32 = 4,
-        t: f32 = 8,
+        z: f32 = 8,
         red: f32 = 12,
         green: f32 = 16,
         blue: f32 = 20,
@@ -98,10 +96,9 @@ const CELL_NODES: usize = 8;
 const DEPTH_NODES: usize = 16;
 const FACTORS: usize = 32;
 const QUARTER_WEIGHTS: usize = 64;
-const DEPTHS_THEMSELVES: usize = 96;
-const WHOLE_DEPTHS: usize = 112;
-const DEPTH_WEIGHTS: usize = 128;
-const NUMBERS: usize = 384;
+const WHOLE_NODES: usize = 96;
+const DEPTH_WEIGHTS: usize = 112;
+const NUMBERS: usize = 368;
 
 /// What is known of a crowd once its sources are sorted.
 #[derive(Debug, Clone, Copy)]
@@ -123,9 +120,9 @@ pub(super) const ROW_OF_ENDS: usize = 26;
 const SLABS_INSIDE: f64 = 6.0;
 const AROUND: [f64; 2] = [0.5, 2.0];
 
-/// Where rays end, light changes as fast with a source's depth as with the end: so many more depths, and cells with
-/// depths so far down that a level has no more than these in a row.
-const MORE_DEPTHS: u32 = 4;
+/// Where rays end, light changes as fast with a source's depth as with the end: so many depths, and more by the range of
+/// ln z; and cells with depths so far down that a level has no more than these in a row.
+const DEPTHS_OF_CUT: [f64; 2] = [4.0, 5.0];
 const MOST_CELLS_ACROSS: u32 = 256;
 
 /// Packs what a scene says of its light, and of the grid; `along` is what depths are measured along that end rays.
@@ -163,11 +160,13 @@ pub(super) fn view(
         t if t >= 2e-4 => (4, 1),
         _ => (5, 2),
     };
-    // Errors of many cells cancel, those of few add up; more nodes cost little there. 1/d^2 needs more room, too.
+    // Errors of many cells cancel, those of few add up; more nodes cost little there. 1/d^2 needs more room, too, but
+    // where many points lie before and behind the ends of rays.
+    let is_even = sorted.sources >= MANY && along.is_some() && nodes == 3;
     let is_concentrated = sorted.occupied < FEW_CELLS;
     let is_tight = is_square && tolerance < LEAST_NEXT_TO_CELLS;
     let block = 1 + u32::from(is_tight || is_square && is_concentrated);
-    let nodes = nodes + u32::from(is_square) + u32::from(is_concentrated);
+    let nodes = nodes + u32::from(is_square && !is_even) + u32::from(is_concentrated);
     // Of many points those around a tile are a small part of its light.
     let is_dense =
         sorted.sources >= MANY && 8.0 * pixel * f64::from(2 * block + 1) < WIDEST_OF_MANY;
@@ -179,7 +178,10 @@ pub(super) fn view(
         Some(_) => {
             let is_coarse = |level: &u32| sight.across << (sight.top - level) <= MOST_CELLS_ACROSS;
             let least = (0..sight.top).find(is_coarse).unwrap_or(sight.top);
-            (shallow.min(least), depths.max(4) + MORE_DEPTHS)
+            (
+                shallow.min(least),
+                (DEPTHS_OF_CUT[0] + DEPTHS_OF_CUT[1] * (high - low)).ceil() as u32 + more,
+            )
         }
     };
     let [begin, end] = slabs(scene, &sight, sorted.t);
@@ -200,8 +202,6 @@ pub(super) fn view(
         pole: (beta * length) as f32,
         scale: (strength * scene.integration.scale(length)) as f32,
         tolerance: tolerance as f32,
-        middle_t: (0.5 * (low + high)) as f32,
-        half_t: (0.5 * (high - low)).max(1e-3) as f32 * 1.0001,
         floor2: (CORE_FLOOR * length).powi(2) as f32,
         is_square: u32::from(is_square),
         nodes: nodes.min(MOST_NODES as u32),
@@ -286,7 +286,12 @@ impl CrowdView {
         (self.nodes * self.nodes * self.depths) as usize
     }
 
-    /// Returns nodes, factors of their weights, and depths.
+    /// Returns how many numbers say where the depths of one cell are.
+    pub(super) fn planes_of_cell(&self) -> usize {
+        2 + (self.depths + self.whole_depths) as usize
+    }
+
+    /// Returns nodes and factors of their weights.
     pub(super) fn numbers(&self) -> Vec<f32> {
         let mut numbers = vec![0.0_f32; NUMBERS];
         let kinds = [(0, 4), (CELL_NODES, self.nodes), (DEPTH_NODES, self.depths)];
@@ -300,26 +305,17 @@ impl CrowdView {
             }
         }
         let nodes = chebyshev(4);
-        for (k, weight) in numbers[QUARTER_WEIGHTS..DEPTHS_THEMSELVES]
-            .iter_mut()
-            .enumerate()
-        {
+        for (k, weight) in numbers[QUARTER_WEIGHTS..WHOLE_NODES].iter_mut().enumerate() {
             let (side, own, parents) = (k / 16, k / 4 % 4, k % 4);
             let place = 0.5 * nodes[own] + side as f64 - 0.5;
             let others = nodes.iter().enumerate().filter(|(j, _)| *j != parents);
             let share = |(_, other): (usize, &f64)| (place - other) / (nodes[parents] - other);
             *weight = others.map(share).product::<f64>() as f32;
         }
-        let depth = |node: f64| {
-            let t = f64::from(self.middle_t) + f64::from(self.half_t) * node;
-            t.exp() as f32
-        };
         let deep = chebyshev(self.depths as usize);
         let whole = chebyshev(self.whole_depths as usize);
-        for (at, nodes) in [(DEPTHS_THEMSELVES, &deep), (WHOLE_DEPTHS, &whole)] {
-            for (number, node) in numbers[at..].iter_mut().zip(nodes) {
-                *number = depth(*node);
-            }
+        for (number, node) in numbers[WHOLE_NODES..].iter_mut().zip(&whole) {
+            *number = *node as f32;
         }
         for (q, own) in whole.iter().enumerate() {
             for (from, node) in deep.iter().enumerate() {

@@ -15,13 +15,14 @@ const PIECE: usize = 1 << 16;
 /// Cells are first told apart by so many bits of their codes.
 const BUCKET_BITS: u32 = 9;
 
-/// A point in the grid: the Morton code of its cell, and what a source is told of it.
+/// A point in the grid: the Morton code of its cell, its column and row, and what a source is told of it.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     cell: u32,
+    place: u32,
     x: f32,
     y: f32,
-    t: f32,
+    z: f32,
     light: [f32; 3],
 }
 
@@ -44,10 +45,10 @@ struct Piece {
     points: Range<usize>,
     buckets: Vec<Vec<Seen>>,
     rest: Vec<f32>,
-    t: [f32; 2],
+    z: [f32; 2],
 }
 
-/// The sources and cells of a bucket.
+/// The sources of a bucket, and in which column and row of cells each is.
 struct Bucket<'a> {
     sources: &'a mut [CrowdSource],
     cells: &'a mut [u32],
@@ -95,10 +96,10 @@ impl Sorter {
         let mut sources = 0;
         for piece in &self.pieces {
             self.rest.extend_from_slice(&piece.rest);
-            (low, high) = (low.min(piece.t[0]), high.max(piece.t[1]));
+            (low, high) = (low.min(piece.z[0]), high.max(piece.z[1]));
             sources += piece.buckets.iter().map(Vec::len).sum::<usize>();
         }
-        let t = [low, high].map(f64::from);
+        let t = [low, high].map(|z| f64::from(z).ln());
         Sorted {
             sources: sources as u32,
             rest: (self.rest.len() / 6) as u32,
@@ -107,7 +108,7 @@ impl Sorter {
         }
     }
 
-    /// Writes what was seen in the order of its cells, and the cell of each; returns how many cells have some.
+    /// Writes what was seen in the order of its cells, and column and row of each; returns how many cells have some.
     pub(super) fn sort(&mut self, mut sources: &mut [CrowdSource], mut cells: &mut [u32]) -> u32 {
         let Self { starts, pieces, .. } = self;
         let (shift, mut first) = (self.shift, 0);
@@ -174,13 +175,13 @@ impl Piece {
                 return;
             }
             let (across, down) = ((column / 8.0) as u32, (row / 8.0) as u32);
-            let t = (z as f32).ln();
-            (low, high) = (low.min(t), high.max(t));
+            (low, high) = (low.min(z as f32), high.max(z as f32));
             let seen = Seen {
                 cell: morton(across, down),
+                place: across | down << 16,
                 x: (column - f64::from(8 * across + 4)) as f32,
                 y: (row - f64::from(8 * down + 4)) as f32,
-                t,
+                z: z as f32,
                 light: [red, green, blue],
             };
             buckets[(seen.cell >> shift) as usize].push(seen);
@@ -198,7 +199,7 @@ impl Piece {
                 }
             });
         }
-        self.t = [low, high];
+        self.z = [low, high];
     }
 }
 
@@ -228,14 +229,14 @@ impl Bucket<'_> {
             self.sources[place] = CrowdSource {
                 x: seen.x,
                 y: seen.y,
-                t: seen.t,
+                z: seen.z,
                 red,
                 green,
                 blue,
                 peak: 0.0,
                 level: 0.0,
             };
-            self.cells[place] = seen.cell;
+            self.cells[place] = seen.place;
         }
     }
 }

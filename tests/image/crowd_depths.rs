@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::crowd_truth::{FEWER_PIXELS, FILLING, MANY, PIXELS, Shape, fault, scene, truth};
 use super::crowds::PROFILES;
+use super::figures::galaxy;
 use crate::common;
 
 /// The promise of a tolerance.
@@ -46,6 +47,12 @@ pub fn put_boxes(scene: &mut Scene, along: DepthAlong) {
     let lengths: Vec<f32> = (0..size.pixels()).map(length).collect();
     assert!(lengths.iter().filter(|it| it.is_finite()).count() > lengths.len() / 20);
     scene.depth = Some(DepthImage::new(size, along, lengths).unwrap());
+}
+
+/// Ends the rays of a scene at steps of five pixels.
+pub fn put_steps(scene: &mut Scene) {
+    let length = |column: u32, row: u32| 3.4 + 0.4 * f64::from((column / 5 + row / 5) % 5);
+    scene.depth = Some(common::depths(scene, DepthAlong::Ray, length));
 }
 
 fn among_boxes(shape: Shape, count: usize, profile: energywave::scene::Profile) -> Scene {
@@ -100,9 +107,38 @@ fn large_crowds_among_boxes_are_within_a_thousandth() {
         (Shape::Clumps, 30_001),
         (Shape::HeavyTails, 30_000),
         (Shape::Fractal, 30_000),
+        (Shape::Fractal, 60_000),
+        (Shape::HeavyTails, 60_001),
     ];
     let mut renderer = common::renderer(common::device().lanes, "");
     assert_eq!(faults(&mut renderer, &cases), Vec::<String>::new());
+}
+
+/// Draws the repository's galaxy behind steps and among boxes, and returns what is wrong with the pictures.
+fn faults_of_galaxy(renderer: &mut Renderer) -> Vec<String> {
+    let mut faults = Vec::new();
+    for profile in PROFILES {
+        let [mut stepped, mut boxed] = [(); 2].map(|()| galaxy(profile));
+        put_steps(&mut stepped);
+        put_boxes(&mut boxed, DepthAlong::Axis);
+        for (scene, what) in [(stepped, "behind steps"), (boxed, "among boxes")] {
+            let image = renderer.render(&scene).unwrap();
+            let name = format!("galaxy {what}, {profile:?}");
+            let fault = fault(&scene, image.as_slice(), TOLERANCE, FEWER_PIXELS, &name);
+            faults.extend(fault);
+        }
+    }
+    faults
+}
+
+#[test]
+fn a_galaxy_is_within_a_thousandth_where_its_light_ends_every_few_pixels() {
+    let mut renderer = common::renderer(common::device().lanes, "");
+    assert_eq!(faults_of_galaxy(&mut renderer), Vec::<String>::new());
+    for spoiled in ["-D ONE_END", "-D ONE_DEPTH"] {
+        let mut renderer = common::renderer(common::device().lanes, spoiled);
+        assert!(!faults_of_galaxy(&mut renderer).is_empty(), "{spoiled}");
+    }
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! Every scene of the repository by every method, in the form of the device: `.ci/gpu-form` runs these on drivers where
 //! kernels have the form of a GPU.
 
+use super::crowd_depths::put_steps;
 use super::crowd_truth::{FEWER_PIXELS, fault};
 use super::crowds::PROFILES;
 use crate::common;
-use energywave::image::{DepthAlong, ImageSize};
+use energywave::image::ImageSize;
 use energywave::scene::{Antialias, Measure, Method, MethodKeys, Profile, Sampling};
 use energywave::{Renderer, RendererOptions, Scene, reference};
 
@@ -73,7 +74,7 @@ fn every_figure_by_simpsons_rule_is_within_float32s_rounding() {
 }
 
 /// The repository's galaxy, whose points are a crowd.
-fn galaxy(profile: Profile) -> Scene {
+pub fn galaxy(profile: Profile) -> Scene {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/points/galaxy.toml");
     let mut scene = Scene::from_file(path).unwrap();
     scene.image = ImageSize {
@@ -100,8 +101,7 @@ fn every_figure_by_crowds_is_within_its_tolerance() {
         let name = format!("galaxy, {profile:?}");
         assert_eq!(fault(&scene, image, tolerance, FEWER_PIXELS, &name), None);
         let mut other = scene.clone();
-        let length = |column: u32, row: u32| 3.4 + 0.4 * f64::from((column / 5 + row / 5) % 5);
-        other.depth = Some(common::depths(&other, DepthAlong::Ray, length));
+        put_steps(&mut other);
         assert!(fault(&other, image, tolerance, FEWER_PIXELS, "partly hidden").is_some());
     }
 }

@@ -57,4 +57,4 @@ mod tiles; // holds interpolation by tiles to the tolerance, and counts what it 
 mod tone_maps; // holds tone maps to their published constants
 mod volume_rest;
 mod volume_steps; // rays through cells where light changes little
-mod volumes; // light of cells, by rays and by slices
+mod volumes;
