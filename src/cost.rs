@@ -33,6 +33,9 @@ pub struct CrowdCost {
     pub tiles: Duration,
     /// In kernels: pixels take the light of tiles, and of points next to them.
     pub pixels: Duration,
+    /// Memory that they take besides the list itself, bytes: buffers on the device, of several the one that has most,
+    /// and what points are sorted in on the host. It is kept for the next frame.
+    pub bytes: u64,
 }
 
 impl CrowdCost {
@@ -42,6 +45,7 @@ impl CrowdCost {
             cells: both(self.cells, other.cells),
             tiles: both(self.tiles, other.tiles),
             pixels: both(self.pixels, other.pixels),
+            bytes: self.bytes.max(other.bytes),
         }
     }
 }

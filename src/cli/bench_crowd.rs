@@ -49,6 +49,8 @@ struct CrowdCell {
     pixels_ms: f64,
     /// Integrals of a frame: rays and points, or nodes that stand for points.
     evaluations: u64,
+    /// Memory on the device and to sort on the host, besides the list of points.
+    bytes: u64,
     /// Relative errors of pixels, of the worst colour of each.
     compared: usize,
     median_error: f64,
@@ -129,6 +131,7 @@ pub fn run(arguments: &BenchArguments) -> Outcome {
                 tiles_ms,
                 pixels_ms,
                 evaluations: speed.cost.integrals,
+                bytes: crowds.bytes,
                 compared: errors.len(),
                 median_error: errors[errors.len() / 2],
                 error_of_999_in_1000: errors[errors.len() * 999 / 1000],

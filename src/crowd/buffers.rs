@@ -41,21 +41,42 @@ pub(super) struct Buffers {
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     what: &'static str,
+    /// One in so many elements more is room for what changes a little from frame to frame.
+    spare: usize,
     pub buffer: Option<DeviceBuffer<T>>,
 }
 
+/// Of points, of which others are in view in every frame, one in so many.
+const SPARE: usize = 16;
+
 impl<T: Pod> Kept<T> {
     pub fn new(what: &'static str) -> Self {
-        Self { what, buffer: None }
+        Self {
+            what,
+            spare: usize::MAX,
+            buffer: None,
+        }
+    }
+
+    fn of_points(what: &'static str) -> Self {
+        Self {
+            spare: SPARE,
+            ..Self::new(what)
+        }
     }
 
     pub fn reserve(&mut self, compute: &Compute, len: usize) -> Result<&mut DeviceBuffer<T>> {
-        let buffer = match self.buffer.take() {
-            Some(buffer) if buffer.len() >= len => buffer,
-            // Somewhat more: crowds change a little from frame to frame.
-            _ => DeviceBuffer::new(compute, self.what, len + len / 16)?,
+        // One that is too small is given back first.
+        let buffer = match self.buffer.take().filter(|it| it.len() >= len) {
+            Some(buffer) => buffer,
+            None => DeviceBuffer::new(compute, self.what, len + len / self.spare)?,
         };
         Ok(self.buffer.insert(buffer))
+    }
+
+    fn bytes(&self) -> usize {
+        let len = self.buffer.as_ref().map_or(0, DeviceBuffer::len);
+        len * size_of::<T>()
     }
 
     pub fn write(&mut self, compute: &Compute, values: &[T]) -> Result<()> {
@@ -67,13 +88,50 @@ impl<T: Pod> Kept<T> {
     }
 }
 
+impl super::Crowd {
+    /// Returns how much memory it takes on the device, and to sort on the host.
+    pub(crate) fn bytes(&self) -> u64 {
+        (self.buffers.bytes() + self.depths.bytes() + self.sorter.bytes()) as u64
+    }
+}
+
 impl Buffers {
+    fn bytes(&self) -> usize {
+        // A buffer that is left out here is an error.
+        let Self {
+            sources,
+            cells,
+            starts,
+            rest,
+            peaks,
+            levels,
+            nodes,
+            planes,
+            limits,
+            numbers,
+            roots,
+            tiles,
+            values,
+            owners,
+            is_wanted,
+            counts,
+            shares,
+            ranges,
+            ends,
+        } = self;
+        let vectors = [peaks, levels, nodes, limits].map(Kept::bytes);
+        let words = [cells, starts, roots, owners, is_wanted, counts].map(Kept::bytes);
+        let numbers = [rest, planes, numbers, values, shares, ranges, ends].map(Kept::bytes);
+        let all = vectors.iter().chain(&words).chain(&numbers);
+        sources.bytes() + tiles.bytes() + all.sum::<usize>()
+    }
+
     pub fn new() -> Self {
         Self {
-            sources: Kept::new("the points of a crowd"),
-            cells: Kept::new("the cells of points"),
+            sources: Kept::of_points("the points of a crowd"),
+            cells: Kept::of_points("the cells of points"),
             starts: Kept::new("where the points of cells begin"),
-            rest: Kept::new("the points beside the image"),
+            rest: Kept::of_points("the points beside the image"),
             peaks: Kept::new("the light of cells"),
             levels: Kept::new("the light around cells"),
             nodes: Kept::new("the nodes of cells"),

@@ -108,6 +108,18 @@ impl Sorter {
         }
     }
 
+    /// Returns how many bytes it takes.
+    pub(super) fn bytes(&self) -> usize {
+        let of_piece = |piece: &Piece| {
+            let seen: usize = piece.buckets.iter().map(Vec::capacity).sum();
+            size_of_val(piece.buckets.as_slice())
+                + seen * size_of::<Seen>()
+                + piece.rest.capacity() * size_of::<f32>()
+        };
+        let numbers = self.starts.capacity() + self.rest.capacity();
+        numbers * size_of::<u32>() + self.pieces.iter().map(of_piece).sum::<usize>()
+    }
+
     /// Writes what was seen in the order of its cells, and column and row of each; returns how many cells have some.
     pub(super) fn sort(&mut self, mut sources: &mut [CrowdSource], mut cells: &mut [u32]) -> u32 {
         let Self { starts, pieces, .. } = self;
@@ -184,7 +196,11 @@ impl Piece {
                 z: z as f32,
                 light: [red, green, blue],
             };
-            buckets[(seen.cell >> shift) as usize].push(seen);
+            let bucket = &mut buckets[(seen.cell >> shift) as usize];
+            if bucket.len() == bucket.capacity() {
+                bucket.reserve_exact(bucket.len() / 8 + 16); // twice as much would be half empty
+            }
+            bucket.push(seen);
         };
         if points.is_spread() {
             let part = |place, light| add(sight.seen(place), light);

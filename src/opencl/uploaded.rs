@@ -195,6 +195,12 @@ impl<T: Pod> UploadedShared<T> {
         outcome
     }
 
+    /// Returns how much memory they take on the device.
+    pub(crate) fn bytes(&self) -> usize {
+        let len = self.buffer.as_ref().map_or(0, DeviceBuffer::len);
+        len * size_of::<T>()
+    }
+
     /// Returns the values, for kernels; null before the first upload.
     pub(crate) fn argument(&self) -> &dyn Argument {
         &self.buffer

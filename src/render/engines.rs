@@ -74,7 +74,9 @@ impl Engines {
             self.has_crowds[1].then(|| self.crowds[1].cost()),
         ];
         let drawn = parts.into_iter().flatten();
-        drawn.reduce(FrameCost::then).unwrap_or_default()
+        let mut cost = drawn.reduce(FrameCost::then).unwrap_or_default();
+        cost.crowds.bytes = self.crowds.iter().map(Crowd::bytes).sum();
+        cost
     }
 
     /// Plans a frame of a valid scene, behind depths that the device has, if there are any: the scene then has none.

@@ -18,6 +18,10 @@ const MOST_LEVELS: u32 = 7;
 /// from all pixels.
 const ACROSS: [(u32, u32); 2] = [(8, 4), (16, 12)];
 
+/// Of narrow lenses lower cells are the highest, if of so many points that are asked one in so many is beside them.
+const ASKED: usize = 1000;
+const PER_ONE_BESIDE: usize = 64;
+
 /// Cells up to this wide need no depths, a slope: rays begin no nearer or farther from one side to the other.
 const WIDTH_WITHOUT_DEPTH: f64 = 0.016;
 
@@ -73,34 +77,57 @@ impl CrowdSight {
         let top = (0..=MOST_LEVELS).rev().find(is_narrow);
         let top = top.ok_or_else(|| refuse("pixels are too wide"))?;
         let ImageSize { width, height } = scene.image;
-        let is_wide_enough = |(_, most): &&(u32, u32)| width.max(height) <= (most * 8) << top;
-        let Some((across, _)) = ACROSS.iter().find(is_wide_enough) else {
-            return Err(refuse("the image is too wide"));
-        };
-        let middle = (across * 4) << top;
-        let [left, above] = [width, height].map(|size| (middle - size.div_ceil(2)) & !7);
         let first = |axis: DVec3, step: f64, begin: u32| {
             plane.first_pixel.dot(axis) / plane.near - step * (f64::from(begin) + 0.5)
         };
-        Ok(Self {
-            eye: plane.eye,
-            first: [first(right, step[0], left), first(down, step[1], above)],
-            right,
-            down,
-            forward: plane.forward,
-            step,
-            near: plane.near,
-            ray_length: plane.ray_length,
-            top,
-            across: *across,
-            left,
-            above,
-            image: scene.image,
-        })
+        let grid = |top: u32| {
+            let is_wide_enough = |(_, most): &&(u32, u32)| width.max(height) <= (most * 8) << top;
+            let (across, _) = *ACROSS.iter().find(is_wide_enough)?;
+            let middle = (across * 4) << top;
+            let [left, above] = [width, height].map(|size| (middle - size.div_ceil(2)) & !7);
+            Some(Self {
+                eye: plane.eye,
+                first: [first(right, step[0], left), first(down, step[1], above)],
+                right,
+                down,
+                forward: plane.forward,
+                step,
+                near: plane.near,
+                ray_length: plane.ray_length,
+                top,
+                across,
+                left,
+                above,
+                image: scene.image,
+            })
+        };
+        // Of a narrow lens lower ones take less memory and time, where hardly a point is beside their grid.
+        let crowd = || scene.points.iter().filter(|it| it.may_be_crowd());
+        let is_enough =
+            |it: &Self| it.across == ACROSS[0].0 && crowd().all(|points| it.holds(points));
+        let least = (0..top).filter_map(grid).find(is_enough);
+        let grid = least.or_else(|| grid(top));
+        grid.ok_or_else(|| refuse("the image is too wide"))
     }
 }
 
 impl CrowdSight {
+    /// Returns whether hardly a point is beside the grid, as far as some of them tell. Those that are take time.
+    fn holds(&self, points: &Points) -> bool {
+        let count = points.points.len();
+        let step = count.div_ceil(ASKED).max(1);
+        let side = f64::from((8 * self.across) << self.top);
+        let is_beside = |index: &usize| {
+            let [x, y, z] = self.seen(points.points.position(*index));
+            let is_within = |place: f64, axis: usize| {
+                (0.0..side).contains(&((place / z - self.first[axis]) / self.step[axis]))
+            };
+            !(z > 0.0 && is_within(x, 0) && is_within(y, 1))
+        };
+        let beside = (0..count).step_by(step).filter(is_beside).count();
+        beside * PER_ONE_BESIDE <= count.div_ceil(step)
+    }
+
     /// Returns the lowest level whose cells need depths, where tiles look at so many of them on each side by their
     /// sources.
     pub(crate) fn base(&self, block: u32) -> u32 {
@@ -161,7 +188,7 @@ impl Points {
     }
 
     /// Returns whether some of them may be around the plane where rays begin.
-    fn is_around_plane(&self, sight: &CrowdSight) -> bool {
+    pub(super) fn is_around_plane(&self, sight: &CrowdSight) -> bool {
         let (low, high) = self.points.bounds();
         let (low, high) = (low - sight.eye, high - sight.eye);
         let (one, other) = (low * sight.forward, high * sight.forward);

@@ -111,10 +111,12 @@ impl Points {
             OF_BALLS
         };
         let per_light = caution * spreading.per_light;
+        let is_near = self.is_around_plane(sight);
         for index in range {
             let light = self.light(index);
             let most = light.max_element();
-            if most > spreading.limit || most == 0.0 || self.is_at_plane(index, sight) {
+            let is_apart = most > spreading.limit || is_near && self.is_at_plane(index, sight);
+            if is_apart || most == 0.0 {
                 continue;
             }
             let (place, radius) = (self.points.position(index), self.radius(index));
@@ -125,8 +127,11 @@ impl Points {
             let far = (place - sight.eye).dot(sight.forward).abs().max(sight.near);
             let pixels = (way.length() + 4.0 * radius) / (far * pixel);
             let wanted = (most * per_light).min(1.0 + PARTS_PER_PIXEL * pixels);
-            let count = wanted.min(MOST_PARTS).ceil().max(1.0);
-            let begin = (index as f64 * ON_LINE).fract();
+            let least = wanted.clamp(1.0, MOST_PARTS);
+            // Conversions are quicker here than what rounds.
+            let count = f64::from(least as u32 + u32::from(f64::from(least as u32) < least));
+            let turns = index as f64 * ON_LINE;
+            let begin = turns - f64::from(turns as u32);
             let first = index.wrapping_mul(count as usize);
             for part in 0..count as usize {
                 let share = (part as f64 + begin) / count;

@@ -6,6 +6,7 @@ mod common;
 
 mod bloom; // compares the bloom of a picture with the host's
 mod canaries; // looks for what is written behind an image
+mod crowd_memory; // counts what crowds of a million points take of memory
 mod device_functions; // compares device functions, one at a time, with float64
 mod distances; // compares the distance to every kind of core with float64
 mod film; // lets a second engine add its light to the wave's

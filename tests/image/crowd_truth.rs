@@ -311,3 +311,20 @@ fn crowds_keep_looser_and_tighter_tolerances() {
     ];
     assert_eq!(faults(&cases), Vec::<String>::new());
 }
+
+/// Of a lens that has all points around its image, and of one that has most of them far beside.
+#[test]
+fn crowds_in_narrow_lenses_are_within_a_thousandth() {
+    let mut renderer = common::renderer(common::device().lanes, "");
+    let mut faults = Vec::new();
+    for (fov_y, count) in [(10.0, 1000), (10.0, 30_000), (2.0, 30_000)] {
+        for profile in PROFILES {
+            let mut scene = scene(Shape::Ball, count, profile, 1e-3);
+            scene.camera.fov_y = fov_y;
+            let image = renderer.render(&scene).unwrap();
+            let name = format!("{fov_y} degrees, {count}, {profile:?}");
+            faults.extend(fault(&scene, image.as_slice(), 1e-3, FEWER_PIXELS, &name));
+        }
+    }
+    assert_eq!(faults, Vec::<String>::new());
+}

@@ -420,9 +420,20 @@ typedef struct energywave_points {
    */
   double color[3];
   /**
-   * How their light falls off: `inverse` or `inverse-square`; NULL: `inverse-square`.
+   * How their light falls off: `inverse`, `inverse-square` or `smeared`; NULL: `inverse-square`.
    */
   const char *profile;
+  /**
+   * A buffer of float4, one for each point: where it was. Its light lies evenly along the way from there, as of a
+   * spark that flies, and falls off by `inverse`, without a radius; the fourth is not looked at. NULL: points have
+   * not moved.
+   */
+  struct _cl_mem *previous;
+  /**
+   * How thick they are, world units: of `smeared`, which needs one, the standard deviation of a ball of light. Of
+   * the others each is then drawn by itself, which is slow for many; 0: they are points.
+   */
+  double radius;
 } energywave_points;
 
 /**

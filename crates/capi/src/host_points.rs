@@ -1,6 +1,7 @@
 //! Points of light in a host's OpenCL buffers.
 
 use std::ffi::c_char;
+use std::mem::offset_of;
 
 use energywave::HostPoints;
 use energywave::scene::Profile;
@@ -27,20 +28,31 @@ pub struct Points {
     pub coefficient: f64,
     /// Linear red, green and blue of points that have no lights of their own.
     pub color: [f64; 3],
-    /// How their light falls off: `inverse` or `inverse-square`; NULL: `inverse-square`.
+    /// How their light falls off: `inverse`, `inverse-square` or `smeared`; NULL: `inverse-square`.
     pub profile: *const c_char,
+    /// A buffer of float4, one for each point: where it was. Its light lies evenly along the way from there, as of a
+    /// spark that flies, and falls off by `inverse`, without a radius; the fourth is not looked at. NULL: points have
+    /// not moved.
+    pub previous: *mut ClMem,
+    /// How thick they are, world units: of `smeared`, which needs one, the standard deviation of a ball of light. Of
+    /// the others each is then drawn by itself, which is slow for many; 0: they are points.
+    pub radius: f64,
 }
 
 // SAFETY: it begins with its size, and its fields are numbers and addresses.
-unsafe impl Versioned for Points {}
+unsafe impl Versioned for Points {
+    const FIRST: usize = offset_of!(Points, previous);
+}
 
 impl Points {
     /// # Safety
     /// `profile` is NULL, or ends with a 0.
     unsafe fn of_host(&self, name: &str) -> Outcome<HostPoints> {
         let mut points = HostPoints::new(self.positions.cast(), self.count);
-        points.lights = (!self.lights.is_null()).then_some(self.lights.cast());
-        points.coefficient = self.coefficient;
+        let optional = |buffer: *mut ClMem| (!buffer.is_null()).then_some(buffer.cast());
+        points.lights = optional(self.lights);
+        points.previous = optional(self.previous);
+        (points.coefficient, points.radius) = (self.coefficient, self.radius);
         points.color = self.color.into();
         let name = format!("{name}.profile");
         // SAFETY: the caller's promise.
@@ -48,9 +60,10 @@ impl Points {
         points.profile = match profile.unwrap_or("inverse-square") {
             "inverse" => Profile::Inverse,
             "inverse-square" => Profile::InverseSquare,
+            "smeared" => Profile::Smeared,
             other => {
                 let other = energywave::shown(other);
-                let reason = format!("\"{other}\" is none; use inverse, inverse-square");
+                let reason = format!("\"{other}\" is none; use inverse, inverse-square, smeared");
                 return Err(bad_argument(&name, &reason));
             }
         };

@@ -159,7 +159,51 @@ static void same(const Host *host) {
     clReleaseMemObject(colors);
 }
 
-/* A program that was compiled when frames had no points, and one of a later version whose points have more. */
+/* Trails and balls are those of a list, and other pictures than points at rest. */
+static void spread(const Host *host) {
+    static float positions[ROWS], lights[ROWS], before[ROWS], others[ROWS];
+    static float resting[VALUES], expected[VALUES], found[VALUES];
+    static char text[TEXT];
+    fill(positions, lights, 5);
+    fill(before, others, 6);
+    const cl_mem places = stored(host, CL_MEM_READ_WRITE, sizeof positions, positions);
+    const cl_mem colors = stored(host, CL_MEM_READ_ONLY, sizeof lights, lights);
+    const cl_mem earlier = stored(host, CL_MEM_READ_ONLY, sizeof before, before);
+    energywave_points points = points_of(places, colors, "inverse");
+    const energywave_frame frame = frame_of(host, &points, 1);
+    draw(host, &frame, resting);
+
+    points.previous = earlier;
+    snprintf(text, sizeof text, "%s", SMALL);
+    add_points(text, positions, lights, "inverse");
+    add_vectors(text, "previous", before);
+    render_text(host, text, expected);
+    draw(host, &frame, found);
+    holds(is_same(found, expected) && !is_same(found, resting), "trails are those of a list, to the bit");
+    points.struct_size = offsetof(energywave_points, previous);
+    draw(host, &frame, found);
+    holds(is_same(found, resting), "points of an older program have none");
+    points.struct_size = sizeof points;
+
+    points.previous = NULL;
+    points.profile = "smeared";
+    points.radius = 0.03125;
+    snprintf(text, sizeof text, "%s", SMALL);
+    add_points(text, positions, lights, "smeared");
+    strcat(text, "radius = 0.03125\n");
+    render_text(host, text, expected);
+    draw(host, &frame, found);
+    holds(is_same(found, expected) && !is_same(found, resting), "balls are those of a list, to the bit");
+    points.radius = 0.0625;
+    draw(host, &frame, found);
+    holds(!is_same(found, expected), "larger ones are another picture");
+    clReleaseMemObject(places);
+    clReleaseMemObject(colors);
+    clReleaseMemObject(earlier);
+}
+
+/* A program that was compiled when frames had no points, one whose points have no trails, and one of a later version
+ * whose points have more. */
 static void versions(const Host *host) {
     static float positions[ROWS], lights[ROWS], found[VALUES], expected[VALUES];
     struct {
@@ -181,6 +225,24 @@ static void versions(const Host *host) {
     two[1].coefficient = 0.25;
     frame = frame_of(host, two, 2);
     draw(host, &frame, expected);
+    /* Older ones lie closer together; what is behind the last is not theirs. */
+    enum { OLDER = offsetof(energywave_points, previous) };
+    union {
+        energywave_points first;
+        char bytes[3 * OLDER];
+    } older;
+    memset(&older, 0x7f, sizeof older);
+    for (int i = 0; i < 2; i++) {
+        two[i].struct_size = OLDER;
+        memcpy(older.bytes + i * OLDER, &two[i], OLDER);
+        two[i].struct_size = sizeof two[i];
+    }
+    frame.points = &older.first;
+    draw(host, &frame, found);
+    holds(is_same(found, expected), "shorter points, of an older program, are without trails");
+    older.first.struct_size--;
+    fails(energywave_enqueue(host->renderer, host->scene, &frame, NULL), ENERGYWAVE_STATUS_BAD_VERSION,
+          "which was 72 at the least");
     for (int i = 0; i < 2; i++) {
         newer[i].points = two[i];
         newer[i].points.struct_size = sizeof newer[i];
@@ -208,6 +270,7 @@ static void misfits(const Host *host) {
     }
     const cl_mem target = stored(host, CL_MEM_READ_WRITE, sizeof light, light);
     const cl_mem places = stored(host, CL_MEM_READ_WRITE, sizeof positions, positions);
+    const cl_mem fewer = stored(host, CL_MEM_READ_WRITE, sizeof positions - 16, positions);
     const cl_mem unread = stored(host, CL_MEM_READ_WRITE | CL_MEM_HOST_NO_ACCESS, sizeof positions, NULL);
     positions[4 * 5 + 1] = NAN;
     lights[4 * 699 + 2] = INFINITY;
@@ -242,10 +305,22 @@ static void misfits(const Host *host) {
     REFUSED(points->positions = nowhere, misfit, "point 5 is at");
     REFUSED(points->positions = unread, misfit, "CL_MEM_HOST_NO_ACCESS");
     REFUSED(points->lights = glaring, misfit, "the light of point 699 is");
+    REFUSED((points->previous = nowhere, points->profile = "inverse"), misfit, "point 5 was at");
+    REFUSED((points->previous = fewer, points->profile = "inverse"), misfit,
+            "previous positions of points: 11184 bytes; 700 points need 16 each");
+    REFUSED(points->previous = image, misfit, "previous positions of points");
+    REFUSED(points->previous = unread, misfit, "CL_MEM_HOST_NO_ACCESS");
+    REFUSED(points->previous = places, ENERGYWAVE_STATUS_SCENE, "points[1].previous");
+    REFUSED(points->profile = "smeared", ENERGYWAVE_STATUS_SCENE, "points[1].radius");
+    REFUSED(points->radius = (double)NAN, ENERGYWAVE_STATUS_SCENE, "points[1].radius");
     REFUSED(points->count++, misfit, "701 points need 16 each");
     REFUSED(points->count = (size_t)-1, misfit, "need 16 each");
     REFUSED(points->coefficient = (double)NAN, ENERGYWAVE_STATUS_SCENE, "points[1].coefficient");
     REFUSED(points->color[1] = (double)INFINITY, ENERGYWAVE_STATUS_SCENE, "points[1].color");
+    energywave_renderer *stale = NULL;
+    works(energywave_renderer_on_host(host->context, host->queue, NULL, &stale), "another renderer");
+    works(energywave_renderer_free(stale), "it is freed");
+    fails(energywave_enqueue(stale, host->scene, &frame, &nothing), ENERGYWAVE_STATUS_BAD_HANDLE, "freed");
     holds(nothing == NULL, "a call that fails gives no event");
     clEnqueueReadBuffer(host->queue, target, CL_TRUE, 0, sizeof light, light, 0, NULL, NULL);
     for (int i = 0; i < VALUES; i++) {
@@ -256,6 +331,7 @@ static void misfits(const Host *host) {
     holds(light[0] != before, "the next frame is drawn");
     clReleaseMemObject(target);
     clReleaseMemObject(places);
+    clReleaseMemObject(fewer);
     clReleaseMemObject(unread);
     clReleaseMemObject(nowhere);
     clReleaseMemObject(glaring);
@@ -281,6 +357,7 @@ int main(void) {
     works(energywave_renderer_on_host(host.context, host.queue, NULL, &host.renderer),
           "a renderer on the host's queue");
     same(&host);
+    spread(&host);
     versions(&host);
     misfits(&host);
     works(energywave_renderer_free(host.renderer), "the renderer is freed");

@@ -18,6 +18,7 @@ use crate::overrides::word;
 pub struct BufferPoints {
     positions: usize,
     lights: Option<usize>,
+    previous: Option<usize>,
     count: usize,
     look: Look,
 }
@@ -28,6 +29,7 @@ struct Look {
     coefficient: f64,
     color: DVec3,
     profile: Profile,
+    radius: f64,
 }
 
 impl Look {
@@ -35,16 +37,18 @@ impl Look {
         let wrong = |name: &str, reason: &str, remedy: &str| {
             misuse(given.py(), &format!("{place}.{name}"), reason, remedy)
         };
-        let (coefficient, color) = (given.getattr("coefficient")?, given.getattr("color")?);
-        let number = coefficient.extract::<f64>();
-        let components = color.extract::<[f64; 3]>();
+        let number = |name: &str| {
+            let number = given.getattr(name)?.extract::<f64>();
+            number.map_err(|_| wrong(name, "it is no number", "give a number"))
+        };
+        let components = given.getattr("color")?.extract::<[f64; 3]>();
         let profiles = [
             ("inverse", Profile::Inverse),
             ("inverse-square", Profile::InverseSquare),
+            ("smeared", Profile::Smeared),
         ];
         Ok(Self {
-            coefficient: number
-                .map_err(|_| wrong("coefficient", "it is no number", "give a number"))?,
+            coefficient: number("coefficient")?,
             color: DVec3::from_array(components.map_err(|_| {
                 let remedy = "give red, green and blue, linear";
                 wrong("color", "it is no colour", remedy)
@@ -54,21 +58,26 @@ impl Look {
                 &given.getattr("profile")?,
                 &profiles,
             )?,
+            radius: number("radius")?,
         })
     }
 }
 
 impl BufferPoints {
     fn of(place: &str, given: &Bound<'_, PyAny>, look: Look) -> PyResult<Self> {
-        let lights = given.getattr("lights")?;
-        let lights = (!lights.is_none()).then(|| handle(&lights, &format!("{place}.lights")));
+        let optional = |name: &str| {
+            let buffer = given.getattr(name)?;
+            let buffer = (!buffer.is_none()).then(|| handle(&buffer, &format!("{place}.{name}")));
+            buffer.transpose()
+        };
         let count = given.getattr("count")?.extract::<usize>().map_err(|_| {
             let (place, reason) = (format!("{place}.count"), "it is no number of points");
             misuse(given.py(), &place, reason, "give a whole number, or None")
         })?;
         Ok(Self {
             positions: handle(&given.getattr("positions")?, &format!("{place}.positions"))?,
-            lights: lights.transpose()?,
+            lights: optional("lights")?,
+            previous: optional("previous")?,
             count,
             look,
         })
@@ -78,8 +87,9 @@ impl BufferPoints {
     pub fn of_host(&self) -> HostPoints {
         let mut points = HostPoints::new(self.positions as *mut c_void, self.count);
         points.lights = self.lights.map(|lights| lights as *mut c_void);
+        points.previous = self.previous.map(|previous| previous as *mut c_void);
         (points.coefficient, points.color) = (self.look.coefficient, self.look.color);
-        points.profile = self.look.profile;
+        (points.profile, points.radius) = (self.look.profile, self.look.radius);
         points
     }
 }
@@ -93,13 +103,19 @@ fn of_rows<T>(array: &Bound<'_, PyAny>, made: fn([f32; 3]) -> T) -> PyResult<Vec
 
 /// Makes points of arrays.
 fn listed(place: &str, given: &Bound<'_, PyAny>, look: Look) -> PyResult<Points> {
-    let positions = of_rows(&given.getattr("positions")?, |row| {
-        DVec3::from_array(row.map(f64::from))
-    })?;
-    let lights = given.getattr("lights")?;
+    let vector = |row: [f32; 3]| DVec3::from_array(row.map(f64::from));
+    let positions = of_rows(&given.getattr("positions")?, vector)?;
+    let (lights, previous) = (given.getattr("lights")?, given.getattr("previous")?);
     let list = match lights.is_none() {
         true => PointList::new(positions),
         false => PointList::with_lights(positions, of_rows(&lights, |row| row)?),
+    };
+    let list = match previous.is_none() {
+        true => list,
+        false => {
+            let previous = of_rows(&previous, vector)?;
+            list.and_then(|list| list.with_previous(previous))
+        }
     };
     let list = list.map_err(|mut error| {
         if let Error::Scene(fault) = &mut error {
@@ -109,7 +125,7 @@ fn listed(place: &str, given: &Bound<'_, PyAny>, look: Look) -> PyResult<Points>
     })?;
     let mut points = Points::new(list);
     (points.coefficient, points.color) = (look.coefficient, look.color);
-    points.profile = look.profile;
+    (points.profile, points.radius) = (look.profile, look.radius);
     Ok(points)
 }
 

@@ -20,7 +20,9 @@ def rows(seed):
 
 def listed(scene, positions, lights=None, **look):
     """The scene with the same points in a table of its own."""
-    look.update({} if lights is None else dict(colors=lights[:, :3].tolist()))
+    previous = look.pop("previous", None)
+    for key, given in dict(colors=lights, previous=previous).items():
+        look.update({} if given is None else {key: given[:, :3].tolist()})
     return ew.Scene(scene.camera, scene.image, *scene.torus, ew.Points(positions=positions[:, :3].tolist(), **look))
 
 
@@ -51,6 +53,41 @@ def test_arrays_are_read_anew_for_every_frame(scene, renderer):
     found = renderer.render(opened, points=points)
     assert np.array_equal(found, renderer.render(listed(scene, moved, lights, coefficient=2.0**-9)))
     assert not np.array_equal(found, before)
+
+
+def test_trails_and_balls_of_arrays_are_those_of_a_table_to_the_bit(scene, renderer):
+    opened, (positions, lights), (before, _) = ew.open_scene(scene), rows(11), rows(12)
+    seen = []
+    for look in [
+        dict(profile="inverse"),
+        dict(profile="inverse", previous=before),
+        dict(profile="inverse", previous=positions),  # which have not moved
+        dict(profile="smeared", radius=0.03125),
+        dict(profile="smeared", radius=0.0625),
+        dict(profile="inverse", radius=0.0625),
+    ]:
+        look.update(coefficient=2.0**-9)
+        seen.append(renderer.render(opened, points=ew.HostPoints(positions, lights, **look)))
+        assert np.array_equal(seen[-1], renderer.render(listed(scene, positions, lights, **look))), look
+    points, trails, resting, *balls = seen
+    np.testing.assert_allclose(resting, points, rtol=2e-3)
+    for one, other in [(trails, points), (balls[0], points), (balls[1], balls[0]), (balls[2], balls[1])]:
+        assert not np.array_equal(one, other)
+    # Truth, of few: each trail is the sum of the points of its way.
+    few, small = slice(0, 20), dict(size=(16, 12), antialias="none")
+    look = dict(profile="inverse", coefficient=1e-2)
+    trails = ew.HostPoints(positions[few], lights[few], previous=before[few], **look)
+    found = ew.render(opened, points=trails, **small)
+    np.testing.assert_allclose(found, ew.render(opened, points=trails, reference=True, **small), rtol=1e-2)
+    steps, look["coefficient"] = 400, 1e-2 / 400
+    shares = (np.arange(steps) + 0.5) / steps
+    way = [share * positions[few, :3] + (1 - share) * before[few, :3] for share in shares]
+    along = ew.HostPoints(np.concatenate(way), np.tile(lights[few], (steps, 1)), **look)
+    summed = ew.render(opened, points=along, **small)
+    np.testing.assert_allclose(found, summed, rtol=1e-2)
+    assert not np.allclose(summed, ew.render(opened, points=ew.HostPoints(
+        positions[few], lights[few], profile="inverse", coefficient=1e-2
+    ), **small), rtol=1e-2)  # fmt: skip
 
 
 def test_other_numbers_are_copied_and_several_lists_add_up(scene, renderer):
@@ -102,12 +139,20 @@ def test_what_are_no_points_is_refused_with_code_place_and_remedy(scene, rendere
         (ew.ArgumentError, "bad-argument", "points[0].lights", "array", ew.HostPoints(right, "white")),
         (ew.UnsupportedError, "unsupported", "points[0].positions", "shape", ew.HostPoints(right[:, :2])),
         (ew.UnsupportedError, "unsupported", "points[1].lights", "699 rows", [good, ew.HostPoints(right, lights[1:])]),
+        (ew.ArgumentError, "bad-argument", "points[0].previous", "array", ew.HostPoints(right, previous="there")),
+        (ew.UnsupportedError, "unsupported", "points[0].previous", "shape", ew.HostPoints(right, previous=right[0])),
+        (ew.UnsupportedError, "unsupported", "points[0].previous", "1 rows", ew.HostPoints(right, previous=right[:1])),
+        (ew.UnsupportedError, "unsupported", "points[0].radius", "number", ew.HostPoints(right, radius="1")),
         (ew.UnsupportedError, "unsupported", "points[0].count", "rows", ew.HostPoints(right, count=3)),
         (ew.UnsupportedError, "unsupported", "points[0].profile", "inverse", ew.HostPoints(right, profile="gaussian")),
         (ew.UnsupportedError, "unsupported", "points[0].color", "colour", ew.HostPoints(right, color=(1, 2))),
         (ew.UnsupportedError, "unsupported", "points[0].coefficient", "number", ew.HostPoints(right, coefficient="1")),
         (ew.SceneError, "scene", "points[0]", "particle 5 is at", ew.HostPoints(nowhere)),
         (ew.SceneError, "scene", "points[1]", "point 699", [good, ew.HostPoints(right, glaring)]),
+        (ew.SceneError, "scene", "points[0]", "point 5 was at", ew.HostPoints(right, previous=nowhere)),
+        (ew.SceneError, "scene", "points[0].previous", "\"inverse\"", ew.HostPoints(right, previous=right)),
+        (ew.SceneError, "scene", "points[0].radius", "finite", ew.HostPoints(right, radius=np.nan)),
+        (ew.SceneError, "scene", "points[0].radius", "radius", ew.HostPoints(right, profile="smeared")),
         (ew.SceneError, "scene", "points[0].coefficient", "finite", ew.HostPoints(right, coefficient=np.nan)),
     ]:
         with pytest.raises(kind) as raised:
@@ -159,6 +204,13 @@ def test_buffers_are_the_points_of_a_table_to_the_bit(host, scene, renderer):
             positions[: COUNT // 2], lights[: COUNT // 2], **look
         ))
     )  # fmt: skip
+    trails = ew.HostPoints(*buffers, previous=target.store(moved), **look)
+    found = target.draw(opened, points=trails)
+    assert np.array_equal(found, renderer.render(listed(scene, positions, lights, previous=moved, **look)))
+    assert not np.array_equal(found, expected)
+    ball = dict(look, profile="smeared", radius=0.03125)
+    found = target.draw(opened, points=ew.HostPoints(*buffers, **ball))
+    assert np.array_equal(found, renderer.render(listed(scene, positions, lights, **ball)))
     # Beside those of an array, and moved by a command that the frame waits for.
     array = ew.HostPoints(moved, **look)
     together = renderer.render(opened, points=[array, ew.HostPoints(positions, lights, **look)])
@@ -181,6 +233,12 @@ def test_buffers_that_do_not_fit_are_refused(host, scene, renderer):
         (ew.HostError, "positions of points", "CL_MEM_HOST_NO_ACCESS", ew.HostPoints(unread)),
         (ew.HostError, "lights of points", "another context", ew.HostPoints(places, foreign)),
         (ew.HostError, "points", "point 5 is at", ew.HostPoints(target.store(nowhere))),
+        (ew.HostError, "points", "point 5 was at", ew.HostPoints(places, previous=target.store(nowhere))),
+        (ew.HostError, "previous positions of points", "another context", ew.HostPoints(places, previous=foreign)),
+        (ew.HostError, "previous positions of points", "need 16 each", ew.HostPoints(
+            places, previous=target.store(positions[1:])
+        )),
+        (ew.ArgumentError, "points[0].previous", "two arrays or", ew.HostPoints(places, previous=positions)),
         (ew.UnsupportedError, "points[0].count", "no number", ew.HostPoints(places, count=-1)),
         (ew.UnsupportedError, "points[0].profile", "inverse", ew.HostPoints(places, profile="z")),
         (ew.ArgumentError, "points[0].lights", "two arrays or two buffers", ew.HostPoints(places, lights)),

@@ -13,6 +13,8 @@ for frame in ew.animate(scene, fps=24, frames=3, size=(32, 24)):
 sparks = ew.HostPoints(np.zeros((10, 4), np.float32), color=(1, 0.5, 0.2), profile="inverse")
 light = ew.render(scene, points=[sparks, ew.HostPoints(np.zeros((10, 3)))], size=(32, 24))
 light = ew.Renderer(reference=True).render(scene, points=sparks)
+trails = ew.HostPoints(np.ones((10, 3)), previous=np.zeros((10, 3)), profile="inverse")
+light = ew.render(scene, points=[trails, ew.HostPoints(np.ones((10, 3)), profile="smeared", radius=0.1)])
 picture: ew.Picture = ew.tone_map(light, scene, exposure="auto")
 names: list[str] = [device.name for device in ew.devices()]
 
@@ -21,4 +23,5 @@ ew.Torus(radius=1)  # type: ignore[call-arg]
 ew.Torus(major_radius=1, profile="cubic")  # type: ignore[arg-type]
 ew.render(scene, widht=3)  # type: ignore[call-arg]
 ew.render(scene, points=3)  # type: ignore[arg-type]
-ew.HostPoints(np.zeros((10, 4)), radius=1.0)  # type: ignore[call-arg]
+ew.HostPoints(np.zeros((10, 4)), size=1.0)  # type: ignore[call-arg]
+ew.HostPoints(np.zeros((10, 4)), radius="large")  # type: ignore[arg-type]

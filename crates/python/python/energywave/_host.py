@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Sequence, Union
 
 import numpy as np
 
@@ -65,7 +65,11 @@ class HostPoints:
             have.
         coefficient: what the light of each is multiplied with.
         color: linear RGB of points that have no lights of their own.
-        profile: how their light falls off: ``"inverse"`` or ``"inverse-square"``.
+        profile: how their light falls off: ``"inverse"``, ``"inverse-square"`` or ``"smeared"``.
+        previous: where each was, likewise: its light lies evenly along the way from there, as of a spark that flies,
+            and falls off by ``"inverse"``, without a radius; None: they have not moved.
+        radius: how thick they are, world units: of ``"smeared"``, which needs one, the standard deviation of a ball of
+            light. Of the others each is then drawn by itself, which is slow for many; 0: they are points.
     """
 
     positions: Any
@@ -74,6 +78,8 @@ class HostPoints:
     coefficient: float = 1.0
     color: Sequence[float] = (1.0, 1.0, 1.0)
     profile: str = "inverse-square"
+    previous: Any = None
+    radius: float = 0.0
 
     @property
     def is_buffer(self) -> bool:
@@ -95,19 +101,23 @@ class HostPoints:
         return [one._as_rows(f"points[{index}]") for index, one in enumerate(found)]
 
     def _as_rows(self, place: str) -> "HostPoints":
-        if self.lights is not None and hasattr(self.lights, "int_ptr") != self.is_buffer:
-            reason = f"it is of type {type(self.lights).__name__}, positions {type(self.positions).__name__}"
-            raise mistype(f"{place}.lights", reason, "give two arrays or two buffers")
+        others: Dict[str, Any] = {"lights": self.lights, "previous": self.previous}
+        others = {name: given for name, given in others.items() if given is not None}
+        for name, given in others.items():
+            if hasattr(given, "int_ptr") != self.is_buffer:
+                reason = f"it is of type {type(given).__name__}, positions {type(self.positions).__name__}"
+                raise mistype(f"{place}.{name}", reason, "give two arrays or two buffers")
         if self.is_buffer:
             return replace(self, count=self.positions.size // 16) if self.count is None else self
         if self.count is not None:
             raise misuse(f"{place}.count", "an array has as many points as rows", "give a part of the array")
         positions = _rows(f"{place}.positions", self.positions)
-        lights = None if self.lights is None else _rows(f"{place}.lights", self.lights)
-        if lights is not None and len(lights) != len(positions):
-            reason = f"{len(lights)} rows, and {len(positions)} positions"
-            raise misuse(f"{place}.lights", reason, "give as many of both")
-        return replace(self, positions=positions, lights=lights)
+        others = {name: _rows(f"{place}.{name}", given) for name, given in others.items()}
+        for name, rows in others.items():
+            if len(rows) != len(positions):
+                reason = f"{len(rows)} rows, and {len(positions)} positions"
+                raise misuse(f"{place}.{name}", reason, "give as many of both")
+        return replace(self, positions=positions, **others)
 
 
 def _rows(name: str, given: Any) -> "NDArray[np.float32]":
