@@ -222,7 +222,7 @@ __kernel void lay_sources(const CrowdView view, const uint level, const uint has
         : n == 4u ? lay_deep(&view, &laying, 4u, own, laid)
                   : lay_deep(&view, &laying, n, own, laid);
     }
-    const uint from = n * n * (has_depths ? depths * deep : cells_below(&view, level) + cell);
+    const uint from = n * n * (has_depths ? depths * deep : limits_of_cell(&view, level, cell, begin));
     const float4 *const row = (const float4 *)laid;
     for (uint node = 0u; node < n * n * depths; ++node)
         nodes[from + node] = row[4u * ROW_VECTORS(n) * (node / n) + node % n];

@@ -104,8 +104,9 @@ INLINE void add_limit(const CrowdView *const view, const float u, const float v,
 }
 
 // Adds the limits of a cell, by its nodes or by its sources, whichever are fewer.
-INLINE void add_limits(const CrowdView *const view, const Cells *const cells, const uint at, const Place place,
-                       const uint first, const uint end, const float angle, NodesOfTile *const tile) {
+INLINE void add_limits(const CrowdView *const view, const Cells *const cells, const uint level, const uint code,
+                       const Place place, const uint first, const uint end, const float angle,
+                       NodesOfTile *const tile) {
     const uint n = view->nodes;
     const float soft4 = angle * angle * angle * angle;
     if (end - first <= n * n)
@@ -117,15 +118,18 @@ INLINE void add_limits(const CrowdView *const view, const Cells *const cells, co
             const float4 peak = source->peak * (float4)(source->red, source->green, source->blue, 0.0f);
             add_limit(view, u, v, peak, soft4, tile);
         }
-    else
+    else {
+        __global const float4 *const limits = cells->limits + n * n * limits_of_cell(view, level, code, first);
         for (uint node = 0u; node < n * n; ++node) {
             const float right = cells->numbers[CELL_NODES + node % n], below = cells->numbers[CELL_NODES + node / n];
             const float u = fma(place.half_side * view->step_u, right, place.u);
             const float v = fma(place.half_side * view->step_v, below, place.v);
-            add_limit(view, u, v, cells->limits[at * n * n + node], soft4, tile);
+            add_limit(view, u, v, limits[node], soft4, tile);
         }
+    }
     for (uint batch = 0u; batch < BATCHES; ++batch)
-        add_light(&tile->light[CUT_OF(tile) * BATCHES + batch], splat(1.0f), cells->levels[at]);
+        add_light(&tile->light[CUT_OF(tile) * BATCHES + batch], splat(1.0f),
+                  cells->levels[cells_below(view, level) + code]);
 }
 
 // Adds the light of the nodes of a cell.
@@ -204,7 +208,7 @@ INLINE void add_cell(const CrowdView *const view, const Cells *const cells, cons
     if (whole.first == whole.end)
         return;
     if (level < view->shallow)
-        add_limits(view, cells, at, place, first, end, angle, tile);
+        add_limits(view, cells, level, code, place, first, end, angle, tile);
     else if (end - first <= n * n * view->whole_depths)
         add_sources(view, cells, first, end, angle, whole, tile);
     else

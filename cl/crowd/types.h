@@ -123,3 +123,18 @@ uint planes_of_cell(const CrowdView *const view) {
 uint cells_across(const CrowdView *const view, const uint level) {
     return view->across << (view->top - level);
 }
+
+// Returns how many cells of a level may have limits on nodes: those of more sources than nodes.
+uint limits_in(const CrowdView *const view, const uint level) {
+    const uint across = cells_across(view, level);
+    return min(across * across, view->sources / (view->nodes * view->nodes + 1u) + 1u);
+}
+
+// Returns which of all limits a cell has, whose sources begin at one: no two such cells begin within so many sources.
+uint limits_of_cell(const CrowdView *const view, const uint level, const uint cell, const uint first) {
+    const uint across = cells_across(view, level), count = limits_in(view, level);
+    uint at = count == across * across ? cell : first / (view->nodes * view->nodes + 1u);
+    for (uint below = 0u; below < level; ++below)
+        at += limits_in(view, below);
+    return at;
+}

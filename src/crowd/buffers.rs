@@ -136,7 +136,7 @@ impl Buffers {
             levels: Kept::new("the light around cells"),
             nodes: Kept::new("the nodes of cells"),
             planes: Kept::new("the depths of the nodes"),
-            limits: Kept::new("the nodes of small cells"),
+            limits: Kept::of_points("the nodes of small cells"),
             numbers: Kept::new("the weights of nodes"),
             roots: Kept::new("the first tiles"),
             tiles: Kept::new("the tiles of a crowd"),
@@ -162,8 +162,7 @@ impl Buffers {
         self.levels.reserve(compute, cells)?;
         self.nodes.reserve(compute, deep * view.nodes_of_cell())?;
         self.planes.reserve(compute, deep * view.planes_of_cell())?;
-        let shallow = view.cells_below(view.shallow) * (view.nodes * view.nodes) as usize;
-        self.limits.reserve(compute, shallow)?;
+        self.limits.reserve(compute, view.numbers_of_limits())?;
         self.tiles.reserve(compute, tiles)?;
         let smallest = (view.tile_columns * view.height.div_ceil(8)) as usize;
         let mut values = tiles;

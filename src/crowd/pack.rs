@@ -286,6 +286,17 @@ impl CrowdView {
         (self.nodes * self.nodes * self.depths) as usize
     }
 
+    /// Returns how many numbers limits on nodes have, of which each has red, green and blue: those of cells of more
+    /// sources than nodes.
+    pub(super) fn numbers_of_limits(&self) -> usize {
+        let nodes = (self.nodes * self.nodes) as usize;
+        let most = self.sources as usize / (nodes + 1) + 1;
+        nodes
+            * (0..self.shallow)
+                .map(|it| self.cells(it).min(most))
+                .sum::<usize>()
+    }
+
     /// Returns how many numbers say where the depths of one cell are.
     pub(super) fn planes_of_cell(&self) -> usize {
         2 + (self.depths + self.whole_depths) as usize
@@ -349,4 +360,17 @@ pub(super) fn morton(column: u32, row: u32) -> u32 {
         (number | number << 1) & 0x5555_5555
     };
     spread(column) | spread(row) << 1
+}
+
+/// Returns the column of a code, and above 16 bits the row.
+#[inline]
+pub(super) fn column_and_row(code: u32) -> u32 {
+    let gather = |mut number: u32| {
+        number &= 0x5555_5555;
+        number = (number | number >> 1) & 0x3333_3333;
+        number = (number | number >> 2) & 0x0f0f_0f0f;
+        number = (number | number >> 4) & 0x00ff_00ff;
+        (number | number >> 8) & 0x0000_ffff
+    };
+    gather(code) | gather(code >> 1) << 16
 }

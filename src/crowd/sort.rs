@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::pack::{CrowdSource, Sorted, morton};
+use super::pack::{CrowdSource, Sorted, column_and_row, morton};
 use crate::scene::{CrowdSight, NEAREST, Points, Profile, Scene, Spreading};
 use crate::threads;
 
@@ -15,11 +15,10 @@ const PIECE: usize = 1 << 16;
 /// Cells are first told apart by so many bits of their codes.
 const BUCKET_BITS: u32 = 9;
 
-/// A point in the grid: the Morton code of its cell, its column and row, and what a source is told of it.
+/// A point in the grid: the Morton code of its cell, and what a source is told of it.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     cell: u32,
-    place: u32,
     x: f32,
     y: f32,
     z: f32,
@@ -190,7 +189,6 @@ impl Piece {
             (low, high) = (low.min(z as f32), high.max(z as f32));
             let seen = Seen {
                 cell: morton(across, down),
-                place: across | down << 16,
                 x: (column - f64::from(8 * across + 4)) as f32,
                 y: (row - f64::from(8 * down + 4)) as f32,
                 z: z as f32,
@@ -252,7 +250,7 @@ impl Bucket<'_> {
                 peak: 0.0,
                 level: 0.0,
             };
-            self.cells[place] = seen.place;
+            self.cells[place] = column_and_row(seen.cell);
         }
     }
 }
