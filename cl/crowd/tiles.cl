@@ -19,7 +19,7 @@
 
 // Cut rays see less light, and behind depths light changes at every edge: more may be misplaced.
 #ifndef CAUTION_OF_CUT
-#define CAUTION_OF_CUT 0.2f
+#define CAUTION_OF_CUT 0.5f
 #endif
 
 // Writes the light at the nodes of a tile, of one end, that its parent has at its own.

@@ -22,8 +22,8 @@ use crate::cost::FrameCost;
 use crate::error::Result;
 use crate::image::{DepthAlong, DepthImage, ImageSize};
 use crate::opencl::{
-    Argument, Compute, Film, FilmFormat, Handle, Kernel, RawMemory, RendererOptions,
-    UploadedShared, run_time,
+    Argument, Compute, Film, FilmFormat, Handle, RawMemory, RendererOptions, UploadedShared,
+    run_time,
 };
 use crate::scene::{Camera, CrowdSight, Integration, Points, Profile, Scene};
 use buffers::{Buffers, NODES_OF_TILE};

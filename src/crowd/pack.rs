@@ -160,13 +160,11 @@ pub(super) fn view(
         t if t >= 2e-4 => (4, 1),
         _ => (5, 2),
     };
-    // Errors of many cells cancel, those of few add up; more nodes cost little there. 1/d^2 needs more room, too, but
-    // where many points lie before and behind the ends of rays.
-    let is_even = sorted.sources >= MANY && along.is_some() && nodes == 3;
+    // Errors of many cells cancel, those of few add up; more nodes cost little there. 1/d^2 needs more room, too.
     let is_concentrated = sorted.occupied < FEW_CELLS;
     let is_tight = is_square && tolerance < LEAST_NEXT_TO_CELLS;
     let block = 1 + u32::from(is_tight || is_square && is_concentrated);
-    let nodes = nodes + u32::from(is_square && !is_even) + u32::from(is_concentrated);
+    let nodes = nodes + u32::from(is_square) + u32::from(is_concentrated);
     // Of many points those around a tile are a small part of its light.
     let is_dense =
         sorted.sources >= MANY && 8.0 * pixel * f64::from(2 * block + 1) < WIDEST_OF_MANY;

@@ -14,14 +14,14 @@ const MILLION: u32 = 1_000_000;
 /// Bytes a million points take at 1920x1080, a point, and the list with them: of a vertical angle of view, behind so
 /// many boxes.
 const STATED: [(f64, u32, Profile, u64); 8] = [
-    (45.0, 0, Profile::Inverse, 190),
-    (45.0, 0, Profile::InverseSquare, 245),
-    (10.0, 0, Profile::Inverse, 190),
-    (10.0, 0, Profile::InverseSquare, 225),
-    (2.0, 0, Profile::Inverse, 395),
-    (2.0, 0, Profile::InverseSquare, 550),
-    (45.0, 100, Profile::Inverse, 510),
-    (45.0, 100, Profile::InverseSquare, 650),
+    (45.0, 0, Profile::Inverse, 170),
+    (45.0, 0, Profile::InverseSquare, 190),
+    (10.0, 0, Profile::Inverse, 160),
+    (10.0, 0, Profile::InverseSquare, 170),
+    (2.0, 0, Profile::Inverse, 215),
+    (2.0, 0, Profile::InverseSquare, 220),
+    (45.0, 100, Profile::Inverse, 470),
+    (45.0, 100, Profile::InverseSquare, 480),
 ];
 
 fn scene(count: u32, fov_y: f64, boxes: u32, profile: Profile) -> Scene {
@@ -42,16 +42,18 @@ fn bytes(scene: &Scene) -> u64 {
 
 #[test]
 fn a_million_points_take_as_much_as_is_stated() {
+    let mut others = Vec::new();
     for (fov_y, boxes, profile, stated) in STATED {
         let all = bytes(&scene(MILLION, fov_y, boxes, profile));
         let each = all / u64::from(MILLION) + OF_LIST;
-        println!("{fov_y} degrees, {boxes} boxes, {profile:?}: {all} bytes, {each} a point");
-        let is_stated = (stated * 9 / 10..=stated).contains(&each);
-        assert!(
-            is_stated,
-            "{fov_y} degrees, {boxes} boxes, {profile:?}: {each} bytes a point, {stated} are stated"
-        );
+        let name =
+            format!("{fov_y} degrees, {boxes} boxes, {profile:?}: {all} bytes, {each} a point");
+        println!("{name}");
+        if !(stated * 9 / 10..=stated).contains(&each) {
+            others.push(format!("{name}; {stated} are stated"));
+        }
     }
+    assert_eq!(others, Vec::<String>::new());
 }
 
 /// Cells and tiles take the same of fewer points; what has more nodes takes more.
@@ -62,7 +64,7 @@ fn fewer_points_take_less_and_tight_tolerances_more() {
     let found = bytes(&fewer);
     let a_point = (million - found) / u64::from(MILLION / 10 * 9);
     println!("{found} bytes of a hundred thousand, {a_point} a point more");
-    assert!((60..=90).contains(&a_point), "{a_point} bytes a point");
+    assert!((75..=100).contains(&a_point), "{a_point} bytes a point");
     fewer.integration.method = Method::exact(1e-4);
     let tight = bytes(&fewer);
     assert!(tight > found / 10 * 15, "{tight} bytes, {found} of 1e-3");
