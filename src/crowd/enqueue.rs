@@ -1,4 +1,5 @@
-//! What a frame of a crowd enqueues: cells of points, tiles that take the light of cells, pixels that take that of tiles.
+//! What a frame of a crowd enqueues: cells of points, tiles that take the light of cells, and pixels that take that of
+//! tiles.
 
 use opencl3::event::Event;
 
