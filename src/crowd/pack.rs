@@ -120,8 +120,8 @@ pub(super) const ROW_OF_ENDS: usize = 26;
 const SLABS_INSIDE: f64 = 6.0;
 const AROUND: [f64; 2] = [0.5, 2.0];
 
-/// Where rays end, light changes as fast with a source's depth as with the end: so many depths, and more by the range of
-/// ln z; and cells with depths so far down that a level has no more than these in a row.
+/// Where rays end, light changes as fast with a source's depth as with the end: so many depths, and more by the range
+/// of ln z; and cells with depths so far down that a level has no more than these in a row.
 const DEPTHS_OF_CUT: [f64; 2] = [4.0, 5.0];
 const MOST_CELLS_ACROSS: u32 = 256;
 
