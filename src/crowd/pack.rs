@@ -120,9 +120,9 @@ pub(super) const ROW_OF_ENDS: usize = 26;
 const SLABS_INSIDE: f64 = 6.0;
 const AROUND: [f64; 2] = [0.5, 2.0];
 
-/// Where rays end, light changes as fast with a source's depth as with the end: so many depths, and more by the range
-/// of ln z; and cells with depths so far down that a level has no more than these in a row.
-const DEPTHS_OF_CUT: [f64; 2] = [4.0, 5.0];
+/// Where rays end, light changes as fast with a source's depth as with the end: so many more depths, and cells with
+/// depths so far down that a level has no more than these in a row.
+const MORE_DEPTHS: u32 = 4;
 const MOST_CELLS_ACROSS: u32 = 256;
 
 /// Packs what a scene says of its light, and of the grid; `along` is what depths are measured along that end rays.
@@ -176,10 +176,7 @@ pub(super) fn view(
         Some(_) => {
             let is_coarse = |level: &u32| sight.across << (sight.top - level) <= MOST_CELLS_ACROSS;
             let least = (0..sight.top).find(is_coarse).unwrap_or(sight.top);
-            (
-                shallow.min(least),
-                (DEPTHS_OF_CUT[0] + DEPTHS_OF_CUT[1] * (high - low)).ceil() as u32 + more,
-            )
+            (shallow.min(least), depths.max(4) + MORE_DEPTHS)
         }
     };
     let [begin, end] = slabs(scene, &sight, sorted.t);

@@ -20,8 +20,8 @@ const STATED: [(f64, u32, Profile, u64); 8] = [
     (10.0, 0, Profile::InverseSquare, 170),
     (2.0, 0, Profile::Inverse, 215),
     (2.0, 0, Profile::InverseSquare, 220),
-    (45.0, 100, Profile::Inverse, 470),
-    (45.0, 100, Profile::InverseSquare, 550),
+    (45.0, 100, Profile::Inverse, 490),
+    (45.0, 100, Profile::InverseSquare, 600),
 ];
 
 fn scene(count: u32, fov_y: f64, boxes: u32, profile: Profile) -> Scene {
